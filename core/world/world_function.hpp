@@ -1,0 +1,73 @@
+// The world as a pure function of a manifest and a point.
+//
+// Owns nothing that changes: one object is shared by every thread. Columns are evaluated in whole rows so that SIMD
+// lanes are full; the value at a lattice point does not depend on the rows, chunk, LOD, thread or processor it was
+// asked from.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/grid/chunk_key.hpp"
+#include "core/world/manifest.hpp"
+#include "core/world/material.hpp"
+
+namespace talus {
+
+/// A rectangle of lattice columns. Column (i, k) stands at voxel (x + i * step, z + k * step).
+struct ColumnGrid {
+  std::int64_t x_voxel = 0;
+  std::int64_t z_voxel = 0;
+  std::int64_t step_voxel = 1;  ///< 2^lod
+  int width = 0;                ///< columns along x, 1..kColumnsMax
+  int depth = 0;                ///< columns along z, 1..kColumnsMax
+};
+inline constexpr int kColumnsMax = 160;
+
+/// Values of a grid of columns, one array per quantity; column (i, k) is at k * stride + i. `stride` is a multiple of
+/// 16 floats.
+struct ColumnBlock {
+  ColumnGrid grid;
+  std::size_t stride = 0;
+  std::vector<float> height_m;  ///< the surface, above sea level
+  std::vector<float> slope_x;   ///< d height / d x of the relief, unitless; approximate inside gullies
+  std::vector<float> slope_z;
+  std::vector<float> ridge;      ///< ridge map, -1 (crease) .. +1 (ridge)
+  std::vector<float> hilliness;  ///< 0 (plain) .. 1 (range)
+  float height_low_m = 0;        ///< over the whole block
+  float height_high_m = 0;
+};
+
+class WorldFunction {
+ public:
+  /// Requires manifest_faults(manifest) to be empty.
+  explicit WorldFunction(Manifest manifest);
+  ~WorldFunction();
+  WorldFunction(const WorldFunction&) = delete;
+  WorldFunction& operator=(const WorldFunction&) = delete;
+
+  const Manifest& manifest() const;
+  int cells() const;       ///< per chunk edge
+  double voxel_m() const;  ///< metres per voxel, a power of two
+  /// No surface lies outside this interval of heights, in metres, anywhere in the world.
+  glm::dvec2 height_range_m() const;
+
+  /// Fills `out` for `grid`, reusing its memory. Two calls that cover the same lattice point give it the same bits.
+  void columns(const ColumnGrid& grid, ColumnBlock& out) const;
+
+  /// What covers the ground at a column whose surface has the unit normal's y component `up`.
+  Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;
+
+ private:
+  struct Terms;
+  std::unique_ptr<const Terms> terms_;
+};
+
+}  // namespace talus

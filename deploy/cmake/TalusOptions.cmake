@@ -1,0 +1,47 @@
+# Language, warnings and switches that hold for every target of the project.
+
+option(TALUS_TESTS "Build the tests" ON)
+option(TALUS_BENCH "Build the benchmark programs" OFF)
+option(TALUS_TIDY "Run clang-tidy on every source as it compiles" OFF)
+set(TALUS_SANITIZE "" CACHE STRING "Sanitizers of this build: empty, address or thread")
+set_property(CACHE TALUS_SANITIZE PROPERTY STRINGS "" address thread)
+
+set(CMAKE_CXX_STANDARD 23)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+# talus_compile: what every translation unit of ours is compiled with.
+add_library(talus_compile INTERFACE)
+target_compile_options(talus_compile INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
+  # One world on every processor: a multiply and an add never fuse behind our back.
+  -ffp-contract=off)
+target_include_directories(talus_compile INTERFACE "${PROJECT_SOURCE_DIR}")
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports these inside inlined standard library code, where there is nothing to repair.
+  target_compile_options(talus_compile INTERFACE
+    -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict -Wno-dangling-reference)
+endif()
+
+if(TALUS_SANITIZE STREQUAL "address")
+  target_compile_options(talus_compile INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(talus_compile INTERFACE -fsanitize=address,undefined)
+elseif(TALUS_SANITIZE STREQUAL "thread")
+  target_compile_options(talus_compile INTERFACE -fsanitize=thread -Wno-tsan -fno-omit-frame-pointer)
+  target_link_options(talus_compile INTERFACE -fsanitize=thread)
+endif()
+
+if(TALUS_TIDY)
+  find_program(TALUS_CLANG_TIDY NAMES clang-tidy-14 clang-tidy REQUIRED)
+  set(CMAKE_CXX_CLANG_TIDY "${TALUS_CLANG_TIDY}" --quiet
+    --extra-arg=-DASIO_HAS_CO_AWAIT=1 --extra-arg=-DASIO_HAS_STD_COROUTINE=1
+    --extra-arg=-D__cpp_concepts=202002L --extra-arg=-Wno-builtin-macro-redefined
+    --extra-arg=-Wno-macro-redefined --extra-arg=-Wno-unknown-warning-option)
+endif()

@@ -1,0 +1,29 @@
+# Third-party packages, all from Debian 12; their headers are SYSTEM so that our warnings stay ours.
+# `deploy/packages` lists what has to be installed for these to be found.
+
+find_package(Threads REQUIRED)
+find_package(glm REQUIRED)
+find_package(hwy REQUIRED)
+find_package(draco REQUIRED)
+find_package(zstd REQUIRED)
+find_package(FlatBuffers REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(prometheus-cpp REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(wslay REQUIRED)
+find_path(TALUS_ASIO_INCLUDE asio.hpp REQUIRED)
+find_path(TALUS_HTTP_PARSER_INCLUDE http_parser.h REQUIRED)
+find_library(TALUS_HTTP_PARSER_LIBRARY http_parser REQUIRED)
+find_program(TALUS_FLATC flatc REQUIRED)
+
+add_library(talus_asio INTERFACE)
+target_include_directories(talus_asio SYSTEM INTERFACE "${TALUS_ASIO_INCLUDE}")
+target_compile_definitions(talus_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+target_link_libraries(talus_asio INTERFACE Threads::Threads)
+
+add_library(talus_http_parser INTERFACE)
+target_include_directories(talus_http_parser SYSTEM INTERFACE "${TALUS_HTTP_PARSER_INCLUDE}")
+target_link_libraries(talus_http_parser INTERFACE "${TALUS_HTTP_PARSER_LIBRARY}")

@@ -1,0 +1,46 @@
+// Which chunks a viewer needs: one LOD per place, neighbours differing by at most one. Pure; SPEC.md section "Interest
+// area".
+//
+// Radius r(L) = near_m * 2^-lod_bias * 2^L, at least kNearEdgesMin edges at LOD 0. A node of LOD L >= 1 is split when
+// its box is nearer than r(L - 1). Start from every LOD kViewLodMax chunk that meets the heights of the world and lies
+// within far_m of the viewer (horizontally); a leaf further than far_m is dropped. Distances are Euclidean, from the
+// viewer to the nearest point of a box. Why neighbours differ by at most one: DECISIONS.md, "Interest area".
+#pragma once
+
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/grid/chunk_key.hpp"
+
+namespace talus::protocol {
+
+/// What of a world the interest area depends on.
+struct WorldShape {
+  int cells = 32;
+  double voxel_m = 1.0;
+  glm::dvec2 height_range_m{-1000.0, 4000.0};
+};
+
+/// A view as it came; any bits.
+struct View {
+  glm::dvec3 position{};
+  glm::dvec3 direction{0.0, 0.0, -1.0};
+  glm::dvec3 velocity{};
+  double near_m = 128.0;
+  double far_m = 12'000.0;
+  double lod_bias = 0.0;
+};
+
+/// `view` with every field finite and within limits: NaN becomes the default, infinity the limit, positions the nearest
+/// place inside the world.
+View clamped(const View& view, const WorldShape& shape);
+
+/// The leaves, in no particular order, without duplicates. Requires a clamped view. `out` is cleared first.
+void interest_area(const View& view, const WorldShape& shape, std::vector<ChunkKey>& out);
+
+/// Smaller is sooner: distance over edge, less for what lies ahead. Requires a clamped view.
+double chunk_urgency(const View& view, const WorldShape& shape, const ChunkKey& key);
+
+}  // namespace talus::protocol

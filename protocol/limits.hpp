@@ -1,0 +1,32 @@
+// The numbers both ends of a connection agree on before they have spoken. Configurable limits are the server's
+// (server/app).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace talus::protocol {
+
+inline constexpr std::uint16_t kVersionLow = 1;   ///< oldest version this build speaks
+inline constexpr std::uint16_t kVersionHigh = 1;  ///< newest
+
+/// Largest message a client may send: head and all, checked on the declared length before anything is allocated.
+inline constexpr std::size_t kInboundMessageBytesMax = 64 * 1024;
+/// Largest message a server sends: a chunk of 32^3 cells is below 32^3 * 5 triangles * 6 B.
+inline constexpr std::size_t kOutboundMessageBytesMax = 1024 * 1024;
+/// Largest number of keys in one `held` or `want`: 64 KiB / 24 B, less the head.
+inline constexpr std::size_t kKeysPerMessageMax = 2600;
+inline constexpr std::size_t kWantedKeysMax = 16'384;
+
+/// Coarsest LOD of an interest area.
+inline constexpr int kViewLodMax = 8;
+/// LOD 0 reaches at least this many chunk edges: below 2 * sqrt(3) = 3.47 neighbouring chunks could differ by two LODs.
+inline constexpr double kNearEdgesMin = 3.5;
+inline constexpr double kNearEdgesMax = 16.0;
+inline constexpr double kFarMax = 32'768.0;  ///< metres
+inline constexpr double kLodBiasMax = 2.0;   ///< in both directions
+
+/// Quantised positions: log2(32 cells * 64 steps) + 1 bits, so that the last step is representable.
+inline constexpr int kNormalBits = 8;
+
+}  // namespace talus::protocol

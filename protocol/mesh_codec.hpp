@@ -1,0 +1,43 @@
+// Chunk meshes as Draco and as glTF binary. SPEC.md sections "Draco payload" and "glTF". No Draco type leaves this
+// file's source.
+#pragma once
+
+#include <cstddef>
+#include <expected>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/grid/chunk_key.hpp"
+#include "core/mesh/chunk_mesh.hpp"
+
+namespace talus::protocol {
+
+/// The lattice a chunk's vertices lie on.
+struct MeshLattice {
+  int cells = 32;       ///< per chunk edge
+  double step_m = 0.0;  ///< voxel_m * 2^lod / kStepsPerCell; a power of two
+};
+MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m);
+
+enum class CodecError { kMalformed, kTooLarge, kEmpty, kInternal };
+std::string_view describe(CodecError error);
+
+/// A Draco mesh: POSITION (float32 x 3, chunk-local metres, explicit quantisation), NORMAL (float32 x 3, octahedral
+/// kNormalBits), GENERIC unique id 2 (material, uint8) and GENERIC unique id 3 (ridge, uint8). Deterministic. kEmpty
+/// without triangles. `speed` 0..10 is Draco's own: 0 smallest, 10 fastest.
+std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
+                                                               int speed = 7);
+
+/// Inverse of encode_draco up to the order of vertices and triangles; positions come back exactly, normals octahedrally
+/// rounded. Safe on any bytes; at most `kOutboundMessageBytesMax` of them.
+std::expected<ChunkMesh, CodecError> decode_draco(std::span<const std::byte> bytes, const MeshLattice& lattice);
+
+/// glTF 2.0 binary with KHR_draco_mesh_compression required: POSITION, NORMAL, COLOR_0, _MATERIAL, _RIDGE; one node,
+/// translated by `translation_m`. A mesh without triangles gives a valid asset with an empty scene.
+std::expected<std::vector<std::byte>, CodecError> encode_glb(const ChunkMesh& mesh, const MeshLattice& lattice,
+                                                             const glm::dvec3& translation_m);
+
+}  // namespace talus::protocol
