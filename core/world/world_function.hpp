@@ -16,20 +16,11 @@
 #include <glm/vec3.hpp>
 
 #include "core/grid/chunk_key.hpp"
+#include "core/grid/column_grid.hpp"
 #include "core/world/manifest.hpp"
 #include "core/world/material.hpp"
 
 namespace talus {
-
-/// A rectangle of lattice columns. Column (i, k) stands at voxel (x + i * step, z + k * step).
-struct ColumnGrid {
-  std::int64_t x_voxel = 0;
-  std::int64_t z_voxel = 0;
-  std::int64_t step_voxel = 1;  ///< 2^lod
-  int width = 0;                ///< columns along x, 1..kColumnsMax
-  int depth = 0;                ///< columns along z, 1..kColumnsMax
-};
-inline constexpr int kColumnsMax = 160;
 
 /// Values of a grid of columns, one array per quantity; column (i, k) is at k * stride + i. `stride` is a multiple of
 /// 16 floats.

@@ -1,0 +1,35 @@
+#include "core/grid/axis.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "core/base/hash.hpp"
+
+namespace talus {
+
+void split_axis(const Octave& octave, int direction, std::int64_t start_voxel, std::int64_t step_voxel, double voxel_m,
+                int count, int first_tap, int taps, Axis& out) {
+  const std::uint64_t seed = mix64(octave.seed, static_cast<std::uint64_t>(direction));
+  // Gradient noise is 0 on its lattice: a shift of its own keeps octaves from all being 0 at the origin.
+  const double shift = static_cast<double>(seed >> 40) * 0x1p-14;
+  bool known = false;
+  std::int64_t last_cell = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double position_m = static_cast<double>(start_voxel + i * step_voxel) * voxel_m;
+    const double p = position_m * octave.cells_per_m + shift;
+    const double floor = std::floor(p);
+    out.fraction[at] = static_cast<float>(p - floor);
+    const auto cell = static_cast<std::int64_t>(floor);
+    for (int t = 0; t < taps; ++t) {
+      auto& row = out.cell_hash[static_cast<std::size_t>(t)];
+      row[at] = known && cell == last_cell
+                    ? row[at - 1]
+                    : static_cast<std::uint32_t>(mix64(seed, static_cast<std::uint64_t>(cell + first_tap + t)));
+    }
+    known = true;
+    last_cell = cell;
+  }
+}
+
+}  // namespace talus

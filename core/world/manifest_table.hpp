@@ -1,0 +1,68 @@
+// The table of every world parameter: name, unit, limits, default, whole numbers only, meaning. Order is canonical.
+#pragma once
+
+#include <array>
+
+#include "core/world/manifest.hpp"
+
+namespace talus {
+
+// clang-format off
+inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
+  {"chunk.cells", "cells", 16, 32, 32, true, "Cells along a chunk's edge, 16 or 32: more means fewer and larger payloads."},
+  {"chunk.voxel_m", "m", 0.25, 4, 1, false, "Edge of a LOD 0 cell, a power of two: less means finer terrain and more chunks."},
+
+  {"macro.continent_m", "m", 2000, 200000, 26000, false, "Wavelength of land and sea: more means larger continents and wider oceans."},
+  {"macro.sea_floor_m", "m", -2000, -20, -320, false, "Height of the open sea floor: lower means deeper seas and steeper shelves."},
+  {"macro.plain_m", "m", 5, 600, 110, false, "Height of the plains inland: more lifts the land and steepens its coasts."},
+  {"macro.land_bias", "", -1, 1, 0.16, false, "Shifts the shoreline: more means more land, less means more sea."},
+  {"macro.range_m", "m", 2000, 100000, 15000, false, "Wavelength of mountain ranges: more means ranges further apart."},
+  {"macro.range_width", "", 0.05, 1, 0.52, false, "Half width of a range in units of its noise: more means broader massifs and narrower plains."},
+  {"macro.range_height_m", "m", 0, 3000, 1150, false, "Uplift along the crest of a range: more means higher mountains."},
+  {"macro.foothill", "", 0, 1, 0.22, false, "Hilliness of land away from the ranges: more turns plains into hills."},
+
+  {"relief.wavelength_m", "m", 200, 20000, 3200, false, "Largest wavelength of hills: more means broader hills."},
+  {"relief.octaves", "", 1, 8, 4, true, "Octaves of hills: more adds finer hills, which makes gullies less orderly."},
+  {"relief.lacunarity", "", 1.5, 3, 2.03, false, "Frequency from one octave to the next: more spreads the octaves further apart."},
+  {"relief.gain", "", 0, 0.8, 0.28, false, "Amplitude from one octave to the next: above 0.4 gullies turn to wool."},
+  {"relief.base_m", "m", 0, 200, 22, false, "Amplitude of hills on plains: more makes plains rolling."},
+  {"relief.hill_m", "m", 0, 1500, 270, false, "Amplitude of hills where hilliness is 1: more means a rougher massif before erosion."},
+
+  {"erosion.scale_m", "m", 50, 10000, 1000, false, "Wavelength of the largest gullies: more means wider spurs and valleys."},
+  {"erosion.octaves", "", 0, 10, 7, true, "Octaves of gullies: more means finer branches; 0 turns erosion off."},
+  {"erosion.strength", "", 0, 1, 0.19, false, "Depth of gullies as a share of their scale: more means deeper valleys and steeper flanks."},
+  {"erosion.gain", "", 0.1, 0.9, 0.5, false, "Depth from one octave to the next: more means coarser fine branches."},
+  {"erosion.lacunarity", "", 1.5, 3, 2, false, "Frequency from one octave to the next: more means a wider jump between branch sizes."},
+  {"erosion.gully_weight", "", 0, 1, 0.5, false, "Share of gullies against pointed peaks: more means deeper gullies and rounder peaks."},
+  {"erosion.detail", "", 0.1, 5, 1.8, false, "How far fine gullies reach on to gentle slopes: less restricts them to steep ones."},
+  {"erosion.rounding_ridge", "", 0, 1, 0.05, false, "Rounding of ridges: more means softer crests."},
+  {"erosion.rounding_crease", "", 0, 1, 0.03, false, "Rounding of creases: more means valley floors filled with sediment."},
+  {"erosion.rounding_input", "", 0, 10, 0.1, false, "Rounding of the peaks and valleys that were there before: more means softer ones."},
+  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next; the lacunarity keeps one size at every octave."},
+  {"erosion.onset_input", "", 0.01, 10, 1.25, false, "Slope of the input at which gullies set in: more lets them begin on gentler slopes."},
+  {"erosion.onset_octave", "", 0.01, 10, 1.25, false, "Steepness of a gully's side at which finer ones set in: more lets them begin nearer its crest."},
+  {"erosion.ridge_onset_input", "", 0.01, 10, 2.8, false, "The same for the ridge map's input: more means thinner lines at peaks and valleys."},
+  {"erosion.ridge_onset_octave", "", 0.01, 10, 1.5, false, "The same for the ridge map's octaves: more means thinner drainage lines."},
+  {"erosion.assumed_slope", "", 0, 5, 0.7, false, "Slope that gully directions assume of the input: more makes branches leave at smaller angles."},
+  {"erosion.assumed_blend", "", 0, 1, 1, false, "Share of the assumed slope against the real one: less lets gullies overpower peaks and valleys."},
+  {"erosion.cell_scale", "", 0.2, 2, 0.7, false, "Stripes per cell: more means longer, more distorted gullies, less means grain."},
+  {"erosion.normalisation", "", 0, 0.99, 0.5, false, "How much stripes are brought to one depth: more means crisper gullies, near 1 spikes appear."},
+  {"erosion.offset", "", -1, 1, 0, false, "Lifts what erosion touched by this share of its magnitude: below 0 lowers it."},
+  {"erosion.fade_altitude", "", 0, 2, 0.55, false, "How much altitude decides what is peak and what is valley: more sharpens peaks and valley floors."},
+  {"erosion.fade_relief", "", 0, 2, 0.75, false, "How much the hills decide what is peak and what is valley: more gives each hill its own peak."},
+  {"erosion.plain_strength", "", 0, 1, 0.06, false, "Erosion where hilliness is 0: more engraves plains."},
+  {"erosion.hill_strength", "", 0, 2, 0.85, false, "Erosion added where hilliness is 1: more means rougher ranges."},
+
+  {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
+  {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},
+  {"micro.base_m", "m", 0, 5, 0.35, false, "Amplitude of roughness on plains: more means bumpier meadows."},
+  {"micro.hill_m", "m", 0, 10, 1.3, false, "Amplitude of roughness added where hilliness is 1: more means rougher rock."},
+
+  {"cover.snow_line_m", "m", -500, 5000, 1050, false, "Height above which snow lies on gentle ground: less means whiter mountains."},
+  {"cover.grass_line_m", "m", -500, 5000, 850, false, "Height up to which grass grows: less means barer mountains."},
+  {"cover.beach_m", "m", 0, 50, 4, false, "Height up to which gentle shores are sand: more means wider beaches."},
+  {"cover.rock_slope", "", 0.1, 4, 0.95, false, "Slope (tangent) from which rock is bare: less means barer flanks."},
+});
+// clang-format on
+
+}  // namespace talus
