@@ -6,6 +6,22 @@
 #include "core/base/hash.hpp"
 
 namespace talus {
+namespace {
+
+/// Repeats the last sample up to a whole vector, so that unused lanes compute on ordinary numbers.
+void pad_rows(int count, int taps, Axis& out) {
+  const auto used = static_cast<std::size_t>(count);
+  const std::size_t end = (used + kRowPadding - 1) / kRowPadding * kRowPadding;
+  for (std::size_t i = used; i < end; ++i) {
+    out.fraction[i] = out.fraction[used - 1];
+    for (int t = 0; t < taps; ++t) {
+      auto& row = out.cell_hash[static_cast<std::size_t>(t)];
+      row[i] = row[used - 1];
+    }
+  }
+}
+
+}  // namespace
 
 void split_axis(const Octave& octave, int direction, std::int64_t start_voxel, std::int64_t step_voxel, double voxel_m,
                 int count, int first_tap, int taps, Axis& out) {
@@ -30,6 +46,7 @@ void split_axis(const Octave& octave, int direction, std::int64_t start_voxel, s
     known = true;
     last_cell = cell;
   }
+  pad_rows(count, taps, out);
 }
 
 }  // namespace talus

@@ -27,8 +27,9 @@ struct Octave {
   std::uint64_t seed = 0;
 };
 
-/// Fills `count` samples from voxel `start` on, `step` voxels apart. Taps are cells first_tap .. first_tap + taps - 1
-/// relative to the sample's own. `direction` (0 for x, 1 for z) keeps the axes' hashes apart.
+/// Fills `count` samples (1..kColumnsMax) and the rest of their last vector from voxel `start` on, `step` voxels apart.
+/// Taps are cells first_tap .. first_tap + taps - 1 relative to the sample's own. `direction` (0 for x, 1 for z) keeps
+/// the axes' hashes apart.
 void split_axis(const Octave& octave, int direction, std::int64_t start_voxel, std::int64_t step_voxel, double voxel_m,
                 int count, int first_tap, int taps, Axis& out);
 

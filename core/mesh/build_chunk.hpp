@@ -1,26 +1,38 @@
 // From a key to a mesh: the whole path of a fresh chunk but its encoding. Pure; memory is the caller's.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/grid/chunk_key.hpp"
 #include "core/mesh/chunk_mesh.hpp"
+#include "core/mesh/extract.hpp"
+#include "core/world/density.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
 
-/// Working memory of one thread. After the first surface chunk no call allocates.
+/// Working memory of one thread. Once it has grown to its largest chunk no call allocates.
 struct ChunkScratch {
   ColumnBlock columns;
-  std::vector<float> density;        ///< (cells + 3)^3 samples
-  std::vector<std::uint64_t> signs;  ///< one word per row of samples
-  std::vector<std::uint32_t> first_vertex;
+  std::vector<float> density;
+  SignRows signs;
+  CrossedEdges edges;
 };
 
 /// Fills `out` with the surface of `key` and returns kMesh, or leaves it empty and says what fills the chunk.
 /// Requires is_valid(key).
 ChunkKind build_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch, ChunkMesh& out);
+
+/// The stages of build_chunk, for those who time or cache them one by one.
+/// The columns a chunk stands on, with a halo of one column on every side for normals.
+ColumnGrid chunk_columns(const WorldFunction& world, const ChunkKey& key);
+/// What fills a chunk that no surface of `columns` reaches, or kMesh where one may.
+ChunkKind kind_by_columns(const WorldFunction& world, const ChunkKey& key, const ColumnBlock& columns);
+/// Densities and signs of the part of the chunk that the surface can reach. Returns where the densities lie.
+DensityBox sample_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch);
+/// Vertices and triangles from sampled densities; kAir or kRock when no edge is crossed after all.
+ChunkKind mesh_chunk(const WorldFunction& world, const ChunkKey& key, const DensityBox& box, ChunkScratch& scratch,
+                     ChunkMesh& out);
 
 }  // namespace talus

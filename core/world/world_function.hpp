@@ -30,10 +30,12 @@ struct ColumnBlock {
   std::vector<float> height_m;  ///< the surface, above sea level
   std::vector<float> slope_x;   ///< d height / d x of the relief, unitless; approximate inside gullies
   std::vector<float> slope_z;
+  std::vector<float> steepness;  ///< 1 / sqrt(1 + slope^2): turns a vertical distance to the surface into a distance
   std::vector<float> ridge;      ///< ridge map, -1 (crease) .. +1 (ridge)
   std::vector<float> hilliness;  ///< 0 (plain) .. 1 (range)
   float height_low_m = 0;        ///< over the whole block
   float height_high_m = 0;
+  std::vector<float> workspace;  ///< the kernels' intermediate arrays
 };
 
 class WorldFunction {
@@ -56,8 +58,9 @@ class WorldFunction {
   /// What covers the ground at a column whose surface has the unit normal's y component `up`.
   Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;
 
+  struct Terms;  ///< the manifest as the kernels want it (core/world/terms.hpp)
+
  private:
-  struct Terms;
   std::unique_ptr<const Terms> terms_;
 };
 

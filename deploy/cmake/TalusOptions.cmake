@@ -22,6 +22,8 @@ target_compile_options(talus_compile INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
   # One world on every processor: a multiply and an add never fuse behind our back.
   -ffp-contract=off)
+# SIMD targets of every kernel: the scalar fallback, SSE4, AVX2 and AVX-512, chosen at run time; SSSE3 is older than any host.
+target_compile_definitions(talus_compile INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
 target_include_directories(talus_compile INTERFACE "${PROJECT_SOURCE_DIR}")
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

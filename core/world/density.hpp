@@ -1,0 +1,29 @@
+// Signed distance to the surface, in metres, negative inside rock: the only door from the world function to a mesh.
+// Pure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/world/world_function.hpp"
+
+namespace talus {
+
+/// A box of density samples over a grid of columns. Sample (i, j, k) is at (j * depth + k) * stride + i and stands at
+/// voxel (grid.x_voxel + i * step, y_voxel + j * step, grid.z_voxel + k * step).
+struct DensityBox {
+  std::int64_t y_voxel = 0;
+  int layers = 0;          ///< samples along y
+  std::size_t stride = 0;  ///< floats from one row along x to the next
+  std::size_t depth = 0;   ///< rows along z
+};
+
+/// Floats that `sample_density` needs for a box of `layers` over `columns`: rows are written in whole vectors.
+std::size_t density_floats(const ColumnGrid& grid, int layers);
+
+/// Fills `samples` (density_floats of them) and says how they lie. The value at a lattice point depends on its column
+/// and its y alone.
+DensityBox sample_density(const ColumnBlock& columns, std::int64_t y_voxel, int layers, std::span<float> samples);
+
+}  // namespace talus

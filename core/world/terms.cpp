@@ -1,0 +1,94 @@
+#include "core/world/terms.hpp"
+
+#include <utility>
+
+#include "core/base/hash.hpp"
+
+namespace talus {
+namespace {
+
+/// Reads a manifest section by section.
+class Reader {
+ public:
+  explicit Reader(const Manifest& manifest) : manifest_(manifest) {}
+  double number(std::string_view name) const { return parameter(manifest_, name); }
+  float real(std::string_view name) const { return static_cast<float>(number(name)); }
+  int whole(std::string_view name) const { return static_cast<int>(number(name)); }
+  /// A stream of chance of its own for each use.
+  std::uint64_t seed(std::uint64_t use) const { return mix64(manifest_.seed, use); }
+
+ private:
+  const Manifest& manifest_;
+};
+
+ErosionControls erosion_of(const Reader& m) {
+  ErosionControls c;
+  c.scale_m = m.number("erosion.scale_m");
+  c.octaves = m.whole("erosion.octaves");
+  c.strength = m.number("erosion.strength");
+  c.gain = m.number("erosion.gain");
+  c.lacunarity = m.number("erosion.lacunarity");
+  c.gully_weight = m.number("erosion.gully_weight");
+  c.detail = m.number("erosion.detail");
+  c.rounding_ridge = m.number("erosion.rounding_ridge");
+  c.rounding_crease = m.number("erosion.rounding_crease");
+  c.rounding_input = m.number("erosion.rounding_input");
+  c.rounding_octave = m.number("erosion.rounding_octave");
+  c.onset_input = m.number("erosion.onset_input");
+  c.onset_octave = m.number("erosion.onset_octave");
+  c.ridge_onset_input = m.number("erosion.ridge_onset_input");
+  c.ridge_onset_octave = m.number("erosion.ridge_onset_octave");
+  c.assumed_slope = m.number("erosion.assumed_slope");
+  c.assumed_blend = m.number("erosion.assumed_blend");
+  c.cell_scale = m.number("erosion.cell_scale");
+  c.normalisation = m.number("erosion.normalisation");
+  c.offset = m.number("erosion.offset");
+  c.seed = m.seed(7);
+  return c;
+}
+
+MacroTerms macro_of(const Reader& m) {
+  return {m.real("macro.sea_floor_m"),   m.real("macro.plain_m"),          m.real("macro.land_bias"),
+          m.real("macro.range_width"),   m.real("macro.range_height_m"),   m.real("macro.foothill"),
+          m.real("relief.base_m"),       m.real("relief.hill_m"),          m.real("erosion.fade_altitude"),
+          m.real("erosion.fade_relief"), m.real("erosion.plain_strength"), m.real("erosion.hill_strength")};
+}
+
+}  // namespace
+
+WorldFunction::Terms terms_of(Manifest manifest) {
+  const Reader m(manifest);
+  WorldFunction::Terms t;
+  t.cells = m.whole("chunk.cells");
+  t.voxel_m = m.number("chunk.voxel_m");
+  t.macro = macro_of(m);
+  const double range_m = m.number("macro.range_m");
+  t.continent = {m.number("macro.continent_m"), 5, 2.1, 0.45, m.seed(1)};
+  t.range = {range_m, 3, 2.2, 0.30, m.seed(2)};
+  t.massif = {range_m * 2.3, 2, 2.0, 0.4, m.seed(3)};
+  t.crest = {range_m * 0.35, 2, 2.0, 0.5, m.seed(4)};
+  t.swell = {range_m * 0.6, 3, 2.0, 0.5, m.seed(5)};
+  t.relief = {m.number("relief.wavelength_m"), m.whole("relief.octaves"), m.number("relief.lacunarity"),
+              m.number("relief.gain"), m.seed(6)};
+  t.erosion = erosion_of(m);
+  const int micro_octaves = m.whole("micro.octaves");
+  t.micro = {m.number("micro.wavelength_m"), micro_octaves > 0 ? micro_octaves : 1, 2.0, 0.5, m.seed(8)};
+  t.micro_base_m = micro_octaves > 0 ? m.real("micro.base_m") : 0.0f;
+  t.micro_high_m = micro_octaves > 0 ? m.real("micro.hill_m") : 0.0f;
+  t.snow_line_m = m.real("cover.snow_line_m");
+  t.grass_line_m = m.real("cover.grass_line_m");
+  t.beach_m = m.real("cover.beach_m");
+  t.rock_slope = m.real("cover.rock_slope");
+
+  // What ranges, hills and gullies reach together in practice, rounded outwards; columns are clamped to it, so it is
+  // never wrong.
+  const double hills = m.number("relief.base_m") + m.number("relief.hill_m");
+  const double gullies = erosion_bound(t.erosion);
+  t.low_m = static_cast<float>(m.number("macro.sea_floor_m") - 150 - 0.5 * hills - 0.1 * gullies);
+  t.high_m =
+      static_cast<float>(m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies);
+  t.manifest = std::move(manifest);
+  return t;
+}
+
+}  // namespace talus

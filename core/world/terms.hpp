@@ -1,0 +1,32 @@
+// The manifest as the kernels want it: floats and noises instead of names. Private to core/world.
+#pragma once
+
+#include "core/erosion/filter.hpp"
+#include "core/noise/gradient_noise.hpp"
+#include "core/world/world_function.hpp"
+
+namespace talus {
+
+/// Shape of land, sea and ranges; heights in metres.
+struct MacroTerms {
+  float sea_floor_m, plain_m, land_bias, range_width, range_height_m, foothill;
+  float hill_base_m, hill_high_m;  ///< amplitude of relief at hilliness 0, and added at 1
+  float fade_altitude, fade_relief, plain_strength, hill_strength;
+};
+
+struct WorldFunction::Terms {
+  Manifest manifest;
+  int cells = 32;
+  double voxel_m = 1;
+  MacroTerms macro{};
+  FractalNoise continent, range, massif, crest, swell, relief, micro;
+  ErosionControls erosion;
+  float micro_base_m = 0, micro_high_m = 0;
+  float low_m = 0, high_m = 0;  ///< heights of surfaces never leave this
+  float snow_line_m = 0, grass_line_m = 0, beach_m = 0, rock_slope = 0;
+};
+
+/// Requires manifest_faults(manifest) to be empty.
+WorldFunction::Terms terms_of(Manifest manifest);
+
+}  // namespace talus

@@ -1,0 +1,142 @@
+#include "core/world/world_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/check.hpp"
+#include "core/base/hash.hpp"
+#include "core/world/relief.hpp"
+#include "core/world/terms.hpp"
+
+namespace talus {
+namespace {
+
+/// Cuts one vector of floats into the arrays of a grid. Sized once, so arrays stay where they are.
+class Arrays {
+ public:
+  Arrays(std::vector<float>& memory, std::size_t count, std::size_t arrays) : count_(count) {
+    memory.resize(std::max(memory.size(), count * arrays));
+    next_ = memory.data();
+  }
+  float* take() { return std::exchange(next_, next_ + count_); }
+  std::span<float> span(float* array) const { return {array, count_}; }
+
+ private:
+  std::size_t count_;
+  float* next_;
+};
+
+NoiseArrays sample(const FractalNoise& noise, const ColumnGrid& grid, Arrays& arrays) {
+  const NoiseArrays out{arrays.take(), arrays.take(), arrays.take()};
+  fractal_noise(noise, grid, arrays.span(out.v), arrays.span(out.x), arrays.span(out.z));
+  return out;
+}
+
+NoiseArrays row_of(const NoiseArrays& a, std::size_t at) {
+  return {a.v + at, a.x + at, a.z + at};
+}
+
+void resize_outputs(ColumnBlock& out, std::size_t count) {
+  for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness})
+    array->resize(count);
+}
+
+/// 7 noises of 3 arrays, relief's 5 and erosion's 3.
+constexpr std::size_t kWorkspaceArrays = 7 * 3 + 5 + 3;
+
+}  // namespace
+
+WorldFunction::WorldFunction(Manifest manifest) {
+  TALUS_CHECK(manifest_faults(manifest).empty());
+  terms_ = std::make_unique<const Terms>(terms_of(std::move(manifest)));
+}
+WorldFunction::~WorldFunction() = default;
+
+const Manifest& WorldFunction::manifest() const {
+  return terms_->manifest;
+}
+int WorldFunction::cells() const {
+  return terms_->cells;
+}
+double WorldFunction::voxel_m() const {
+  return terms_->voxel_m;
+}
+glm::dvec2 WorldFunction::height_range_m() const {
+  return {static_cast<double>(terms_->low_m), static_cast<double>(terms_->high_m)};
+}
+
+void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
+  const Terms& t = *terms_;
+  const std::size_t stride = row_stride(grid);
+  const std::size_t count = sample_count(grid);
+  out.grid = grid;
+  out.stride = stride;
+  resize_outputs(out, count);
+  Arrays arrays(out.workspace, count, kWorkspaceArrays);
+
+  const NoiseArrays continent = sample(t.continent, grid, arrays);
+  const NoiseArrays range = sample(t.range, grid, arrays);
+  const NoiseArrays massif = sample(t.massif, grid, arrays);
+  const NoiseArrays crest = sample(t.crest, grid, arrays);
+  const NoiseArrays swell = sample(t.swell, grid, arrays);
+  const NoiseArrays relief = sample(t.relief, grid, arrays);
+  float* height = arrays.take();
+  float* slope_x = arrays.take();
+  float* slope_z = arrays.take();
+  float* fade = arrays.take();
+  float* strength = arrays.take();
+  for (std::size_t at = 0; at < count; at += stride) {
+    relief_row(
+        t.macro,
+        {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
+         row_of(relief, at), height + at, slope_x + at, slope_z + at, fade + at, strength + at, &out.hilliness[at]},
+        stride);
+  }
+
+  float* eroded = arrays.take();
+  float* eroded_x = arrays.take();
+  float* eroded_z = arrays.take();
+  erode(t.erosion, grid, {arrays.span(slope_x), arrays.span(slope_z), arrays.span(fade), arrays.span(strength)},
+        {arrays.span(eroded), arrays.span(eroded_x), arrays.span(eroded_z), out.ridge});
+
+  const NoiseArrays micro = sample(t.micro, grid, arrays);
+  for (std::size_t at = 0; at < count; at += stride) {
+    surface_row(t,
+                {height + at, slope_x + at, slope_z + at, &out.hilliness[at], eroded + at, eroded_x + at, eroded_z + at,
+                 micro.v + at, micro.x + at, micro.z + at, &out.height_m[at], &out.slope_x[at], &out.slope_z[at],
+                 &out.steepness[at]},
+                stride);
+  }
+
+  out.height_low_m = t.high_m;
+  out.height_high_m = t.low_m;
+  for (std::size_t at = 0; at < count; at += stride) {
+    const auto row = std::span(out.height_m).subspan(at, static_cast<std::size_t>(grid.width));
+    const auto [low, high] = std::ranges::minmax(row);
+    out.height_low_m = std::min(out.height_low_m, low);
+    out.height_high_m = std::max(out.height_high_m, high);
+  }
+}
+
+Material WorldFunction::cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const {
+  const Terms& t = *terms_;
+  // A dither per column breaks the lines along which altitude and slope change the cover.
+  const std::uint64_t hash = mix64(mix64(t.manifest.seed, static_cast<std::uint64_t>(column_voxel.x)),
+                                   static_cast<std::uint64_t>(column_voxel.y));
+  const float dither = static_cast<float>(hash >> 40) * 0x1p-24f - 0.5f;
+  const float cosine = std::max(up, 0.05f);
+  const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  const float steep = slope + 0.12f * dither;
+
+  if (height_m < t.beach_m + 1.5f * dither && steep < 0.35f) return Material::kSand;
+  if (height_m < -1.0f) return steep < t.rock_slope ? Material::kSand : Material::kRock;
+  if (steep > t.rock_slope) return Material::kRock;
+  if (height_m + 160.0f * dither - 220.0f * (slope - 0.4f) > t.snow_line_m) return Material::kSnow;
+  if (ridge < -0.72f && hilliness > 0.15f) return Material::kStreamBed;
+  if (height_m + 120.0f * dither > t.grass_line_m) return steep > 0.45f ? Material::kScree : Material::kSoil;
+  if (steep > 0.72f * t.rock_slope) return ridge > 0.1f ? Material::kSoil : Material::kScree;
+  return Material::kGrass;
+}
+
+}  // namespace talus
