@@ -121,7 +121,7 @@ node_modules() {
   local folder=$1 stamp lock
   command -v npm >/dev/null || fail "npm is not installed. Run again without --no-install."
   stamp="$root/$folder/node_modules/.talus-lock"
-  lock="$(node --version) $(sha256sum <"$root/$folder/package-lock.json")"
+  lock="$(node --version) $(sha256sum <"$root/$folder/package-lock.json")" || return 1
   [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$lock" ] || return 0
   (cd "$root/$folder" && step "npm ci in $folder" "npm-${folder//\//-}.log" \
     npm ci --ignore-scripts --no-audit --no-fund) || return 1
@@ -132,7 +132,7 @@ node_modules() {
 build_viewer() {
   local web=client_sample/web sources stamp="$root/build/viewer.sources"
   sources=$(cd "$root/$web" && find . \( -name node_modules -o -name dist -o -name screenshots \) -prune -o -type f -print0 |
-    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum) || return 1
   if [ -f "$root/$web/dist/index.html" ] && [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$sources" ]; then return 0; fi
   node_modules "$web" || return 1
   (cd "$root/$web" && step "build the viewer" viewer.log npm run build) || return 1
