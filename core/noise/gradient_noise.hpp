@@ -23,7 +23,7 @@ struct FractalNoise {
   std::uint64_t seed = 0;
 };
 
-/// One octave has standard deviation 0.40 and stays within +-1.6; a sum is not normalised by its octaves.
+/// One octave has standard deviation 0.28 and stays within +-1.6; a sum is not normalised by its octaves.
 /// 1.6 is the most four gradients of the unit square can give, 1, times this scale.
 inline constexpr float kNoiseScale = 1.6f;
 /// No value of `noise` lies outside +- this.

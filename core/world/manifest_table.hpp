@@ -15,17 +15,17 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"macro.continent_m", "m", 2000, 200000, 26000, false, "Wavelength of land and sea: more means larger continents and wider oceans."},
   {"macro.sea_floor_m", "m", -2000, -20, -320, false, "Height of the open sea floor: lower means deeper seas and steeper shelves."},
   {"macro.plain_m", "m", 5, 600, 110, false, "Height of the plains inland: more lifts the land and steepens its coasts."},
-  {"macro.land_bias", "", -1, 1, 0.16, false, "Shifts the shoreline: more means more land, less means more sea."},
-  {"macro.range_m", "m", 2000, 100000, 15000, false, "Wavelength of mountain ranges: more means ranges further apart."},
-  {"macro.range_width", "", 0.05, 1, 0.52, false, "Half width of a range in units of its noise: more means broader massifs and narrower plains."},
+  {"macro.land_bias", "", -1, 1, 0, false, "Shifts the shoreline: more means more land, less means more sea."},
+  {"macro.range_m", "m", 2000, 100000, 11000, false, "Wavelength of mountain ranges: more means ranges further apart."},
+  {"macro.range_width", "", 0.05, 1, 0.62, false, "Half width of a range in units of its noise: more means broader massifs and narrower plains."},
   {"macro.range_height_m", "m", 0, 3000, 1150, false, "Uplift along the crest of a range: more means higher mountains."},
-  {"macro.foothill", "", 0, 1, 0.22, false, "Hilliness of land away from the ranges: more turns plains into hills."},
+  {"macro.foothill", "", 0, 1, 0.5, false, "Hilliness of land away from the ranges: more turns plains into hills."},
 
   {"relief.wavelength_m", "m", 200, 20000, 3200, false, "Largest wavelength of hills: more means broader hills."},
   {"relief.octaves", "", 1, 8, 4, true, "Octaves of hills: more adds finer hills, which makes gullies less orderly."},
   {"relief.lacunarity", "", 1.5, 3, 2.03, false, "Frequency from one octave to the next: more spreads the octaves further apart."},
   {"relief.gain", "", 0, 0.8, 0.28, false, "Amplitude from one octave to the next: above 0.4 gullies turn to wool."},
-  {"relief.base_m", "m", 0, 200, 22, false, "Amplitude of hills on plains: more makes plains rolling."},
+  {"relief.base_m", "m", 0, 200, 35, false, "Amplitude of hills on plains: more makes plains rolling."},
   {"relief.hill_m", "m", 0, 1500, 270, false, "Amplitude of hills where hilliness is 1: more means a rougher massif before erosion."},
 
   {"erosion.scale_m", "m", 50, 10000, 1000, false, "Wavelength of the largest gullies: more means wider spurs and valleys."},
@@ -61,7 +61,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"cover.snow_line_m", "m", -500, 5000, 1050, false, "Height above which snow lies on gentle ground: less means whiter mountains."},
   {"cover.grass_line_m", "m", -500, 5000, 850, false, "Height up to which grass grows: less means barer mountains."},
   {"cover.beach_m", "m", 0, 50, 4, false, "Height up to which gentle shores are sand: more means wider beaches."},
-  {"cover.rock_slope", "", 0.1, 4, 0.95, false, "Slope (tangent) from which rock is bare: less means barer flanks."},
+  {"cover.rock_slope", "", 0.1, 4, 1.1, false, "Slope (tangent) from which rock is bare: less means barer flanks."},
 });
 // clang-format on
 
