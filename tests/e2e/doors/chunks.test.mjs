@@ -1,0 +1,162 @@
+// Chunks over HTTP: bytes, kinds, caching, the table of malformed coordinates, and equal bytes whatever the threads.
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { after, before, describe, test } from 'node:test';
+import gltf from 'gltf-validator';
+import { request } from './frame/http.mjs';
+import { startServer } from './frame/server.mjs';
+import { chunkPath, manifestOf, meshPath, surfaceKeys } from './frame/terrain.mjs';
+
+const limit = 2 ** 30 - 1;
+const places = [[40, 40], [-2500, 1800], [30_000, -70_000], [-1, -1], [1_000_000_000, -1_000_000_000]];
+
+describe('chunks', () => {
+  let server;
+  let http;
+  let manifest;
+  before(async () => {
+    server = await startServer(['--threads', '2']);
+    http = server.ready.http;
+    manifest = await manifestOf(server);
+  });
+  after(() => server?.stop());
+
+  test('with a surface are Draco meshes that any cache may keep for ever', async () => {
+    let meshes = 0;
+    for (const lod of [0, 1, 4, 8]) {
+      for (const key of await surfaceKeys(http, manifest, lod, places)) {
+        const answer = await request(http, chunkPath(manifest, key, 'drc'));
+        assert.ok(answer.status === 200 || answer.status === 204, `${JSON.stringify(key)}: ${answer.status}`);
+        assert.match(answer.headers.etag, /^"[^"]+"$/);
+        assert.equal(answer.headers['cache-control'], 'public, max-age=31536000, immutable');
+        if (answer.status === 204) continue;
+        meshes += 1;
+        assert.equal(answer.body.subarray(0, 5).toString(), 'DRACO');
+        assert.equal(Number(answer.headers['content-length']), answer.body.length);
+        assert.equal(answer.headers['content-encoding'], undefined);
+      }
+    }
+    assert.ok(meshes >= 10, `${meshes} meshes`);
+  });
+
+  test('without a surface are 204 and say whether they are air or rock', async () => {
+    const [low, high] = manifest.height_range_m;
+    const edge = manifest.chunk_cells * manifest.voxel_m;
+    const above = await request(http, chunkPath(manifest, { lod: 0, x: 0, y: Math.ceil(high / edge) + 1, z: 0 }, 'drc'));
+    const below = await request(http, chunkPath(manifest, { lod: 0, x: 0, y: Math.floor(low / edge) - 2, z: 0 }, 'drc'));
+    for (const [answer, kind] of [[above, 'air'], [below, 'rock']]) {
+      assert.equal(answer.status, 204);
+      assert.equal(answer.headers['talus-chunk'], kind);
+      assert.equal(answer.body.length, 0);
+    }
+  });
+
+  test('are valid glTF', async () => {
+    let assets = 0;
+    for (const lod of [0, 3, 6]) {
+      for (const key of await surfaceKeys(http, manifest, lod, places)) {
+        const answer = await request(http, `${chunkPath(manifest, key, 'glb')}?origin=${places[0][0]},0,0`);
+        if (answer.status === 204) continue;
+        assert.equal(answer.status, 200);
+        assert.equal(answer.headers['content-type'], 'model/gltf-binary');
+        const report = await gltf.validateBytes(new Uint8Array(answer.body), { maxIssues: 20 });
+        const found = report.issues.messages.filter((issue) => issue.severity <= 1 && issue.code !== 'UNSUPPORTED_EXTENSION');
+        assert.deepEqual(found, [], JSON.stringify(key));
+        assets += 1;
+      }
+    }
+    assert.ok(assets >= 6, `${assets} assets`);
+  });
+
+  test('answer 304 to their own ETag, and 200 to another', async () => {
+    for (const format of ['drc', 'glb']) {
+      const path = await meshPath(server, format);
+      const first = await request(http, path);
+      const etag = first.headers.etag;
+      for (const match of [etag, `"other", ${etag}`, `W/${etag}`, '*']) {
+        const again = await request(http, path, { headers: { 'If-None-Match': match } });
+        assert.equal(again.status, 304, `${format} ${match}`);
+        assert.equal(again.body.length, 0);
+        assert.equal(again.headers.etag, etag);
+      }
+      assert.equal((await request(http, path, { headers: { 'If-None-Match': '"other"' } })).status, 200);
+    }
+    const drc = await request(http, await meshPath(server, 'drc'));
+    const glb = await request(http, await meshPath(server, 'glb'));
+    assert.notEqual(drc.headers.etag, glb.headers.etag);
+  });
+
+  test('know their ETag without being made', async () => {
+    const [key] = await surfaceKeys(http, manifest, 0, [[123_456, 654_321]]);
+    const path = chunkPath(manifest, key, 'drc');
+    const etag = (await request(http, await meshPath(server))).headers.etag;
+    const unseen = await request(http, path, { headers: { 'If-None-Match': etag } });
+    assert.equal(unseen.status, 304, 'the ETag names world, revision and format, not the chunk');
+  });
+
+  test('refuse malformed and far coordinates by name', async () => {
+    const bad = ['', '+1', '01', '-0', '-', '1.0', '1e3', '0x1', ' 1', '1 ', '%20', '%201', '%EF%BC%91', '%00', 'NaN', 'nan', 'inf',
+      '1e300', String(2 ** 30), String(-(2 ** 30)), String(2 ** 31), String(-(2 ** 31)), String(2 ** 53), '9'.repeat(400), '..', "'"];
+    for (const value of bad.filter((text) => !/[ ]/.test(text))) {
+      for (const [field, path] of [['x', `0/${value}/0/0`], ['y', `0/0/${value}/0`], ['z', `0/0/0/${value}`], ['lod', `${value}/0/0/0`]]) {
+        const whole = `/v1/worlds/default/chunks/${path}.drc`;
+        const answer = await request(http, whole);
+        assert.equal(answer.status, 400, whole);
+        const body = JSON.parse(answer.body.toString());
+        assert.equal(typeof body.error, 'string', whole);
+        assert.match(body.message, new RegExp(`\\b${field}\\b`), `${whole}: ${body.message}`);
+      }
+    }
+    for (const lod of ['-1', String(manifest.lod_max + 1), '13', '255', '256']) {
+      assert.equal((await request(http, `/v1/worlds/default/chunks/${lod}/0/0/0.drc`)).status, 400, `lod ${lod}`);
+    }
+  });
+
+  test('exist at the very limit of coordinates', async () => {
+    for (const lod of [0, manifest.lod_max]) {
+      for (const [x, z] of [[limit, -limit], [-limit, limit]]) {
+        const answer = await request(http, chunkPath(manifest, { lod, x, y: 0, z }, 'drc'));
+        assert.ok(answer.status === 200 || answer.status === 204, `lod ${lod}: ${answer.status}`);
+      }
+    }
+  });
+
+  test('refuse formats they do not have, and bad queries', async () => {
+    const path = await meshPath(server, 'drc');
+    for (const format of ['obj', 'DRC', 'drc2', '', 'drc.glb']) {
+      const answer = await request(http, path.replace(/drc$/, format));
+      assert.ok(answer.status === 400, `${format}: ${answer.status}`);
+    }
+    const glb = await meshPath(server, 'glb');
+    for (const query of ['origin=', 'origin=1,2', 'origin=a,b,c', 'origin=nan,0,0', 'origin=1e999,0,0']) {
+      assert.equal((await request(http, `${glb}?${query}`)).status, 400, query);
+    }
+  });
+});
+
+describe('the bytes of chunks', () => {
+  test('are equal for 1, 2 and 8 threads, in any order', async () => {
+    const digests = [];
+    for (const [threads, reversed] of [['1', false], ['2', true], ['8', false]]) {
+      const server = await startServer(['--threads', threads]);
+      try {
+        const manifest = await manifestOf(server);
+        const keys = [];
+        for (const lod of [0, 2, 5]) keys.push(...(await surfaceKeys(server.ready.http, manifest, lod, places)));
+        if (reversed) keys.reverse();
+        const paths = keys.flatMap((key) => [chunkPath(manifest, key, 'drc'), chunkPath(manifest, key, 'glb')]);
+        const answers = await Promise.all(
+          paths.map(async (path) => {
+            const { status, body } = await request(server.ready.http, path);
+            return `${path} ${status} ${createHash('sha256').update(body).digest('hex')}`;
+          }),
+        );
+        digests.push(answers.sort().join('\n'));
+      } finally {
+        await server.stop();
+      }
+    }
+    assert.equal(digests[1], digests[0]);
+    assert.equal(digests[2], digests[0]);
+  });
+});
