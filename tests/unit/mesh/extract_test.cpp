@@ -1,0 +1,138 @@
+#include "core/mesh/extract.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/mesh/cell_table.hpp"
+#include "tests/support/random.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint64_t kSeed = 99;
+
+bool rock(const SignRows& signs, int x, int y, int z) {
+  return (signs.rows[static_cast<std::size_t>(y * (signs.cells + 1) + z)] >> x & 1U) != 0;
+}
+
+SignRows random_signs(testing::Random& random, int cells, double share) {
+  SignRows signs{cells, {}};
+  for (int r = 0; r < (cells + 1) * (cells + 1); ++r) {
+    std::uint64_t row = 0;
+    for (int x = 0; x <= cells; ++x) row |= static_cast<std::uint64_t>(random.unit() < share) << x;
+    signs.rows.push_back(row);
+  }
+  return signs;
+}
+
+TEST(CellTable, ShowsACornerOfRockTheWayOut) {
+  // Rock at the origin only: one triangle whose normal points away from it.
+  const CellTriangles& t = kCellTriangles[1];
+  ASSERT_EQ(t.count, 1);
+  EXPECT_EQ((std::array{t.edges[0], t.edges[1], t.edges[2]}), (std::array<std::uint8_t, 3>{0, 4, 8}));
+}
+
+TEST(CellTable, CutsEveryCrossedEdgeAndNoOther) {
+  for (unsigned pattern = 0; pattern < 256; ++pattern) {
+    std::set<int> crossed;
+    for (int a = 0; a < 8; ++a) {
+      for (const int bit : {1, 2, 4}) {
+        const int b = a ^ bit;
+        if (a < b && ((pattern >> a ^ pattern >> b) & 1U) != 0) crossed.insert(cell_table::edge_between(a, b));
+      }
+    }
+    const CellTriangles& t = kCellTriangles[pattern];
+    const std::set<int> used(t.edges.begin(), t.edges.begin() + 3 * t.count);
+    EXPECT_EQ(used, crossed) << pattern;
+  }
+}
+
+TEST(Extract, FindsTheEdgesThatASlowSearchFinds) {
+  testing::Random random(kSeed);
+  for (const int cells : {1, 2, 5, 16, 32}) {
+    const SignRows signs = random_signs(random, cells, 0.5);
+    CrossedEdges edges;
+    find_crossed_edges(signs, edges);
+    std::set<std::tuple<int, int, int, int>> slow;
+    for (int y = 0; y <= cells; ++y) {
+      for (int z = 0; z <= cells; ++z) {
+        for (int x = 0; x <= cells; ++x) {
+          if (x < cells && rock(signs, x, y, z) != rock(signs, x + 1, y, z)) slow.insert({0, x, y, z});
+          if (y < cells && rock(signs, x, y, z) != rock(signs, x, y + 1, z)) slow.insert({1, x, y, z});
+          if (z < cells && rock(signs, x, y, z) != rock(signs, x, y, z + 1)) slow.insert({2, x, y, z});
+        }
+      }
+    }
+    std::set<std::tuple<int, int, int, int>> fast;
+    std::uint32_t count = 0;
+    for_each_crossed_edge(signs, edges, [&](const CrossedEdge& e) {
+      fast.insert({e.axis, e.x, e.y, e.z});
+      ++count;
+    });
+    EXPECT_EQ(fast, slow);
+    EXPECT_EQ(count, edges.vertices);
+  }
+}
+
+TEST(Extract, ClosesEverySurfaceInsideTheChunkWhateverTheSigns) {
+  testing::Random random(kSeed);
+  for (int round = 0; round < 120; ++round) {
+    const int cells = round < 100 ? 6 : 32;
+    const SignRows signs = random_signs(random, cells, random.real(0.02, 0.98));
+    CrossedEdges edges;
+    find_crossed_edges(signs, edges);
+    std::vector<CrossedEdge> vertices;
+    for_each_crossed_edge(signs, edges, [&](const CrossedEdge& e) { vertices.push_back(e); });
+    std::vector<std::uint32_t> indices;
+    extract_triangles(signs, edges, indices);
+
+    // A side walked one way by one triangle is walked the other way by another, unless it lies in a face of the chunk.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+    std::set<std::array<std::uint32_t, 3>> seen;
+    for (std::size_t t = 0; t < indices.size(); t += 3) {
+      std::array<std::uint32_t, 3> corners{indices[t], indices[t + 1], indices[t + 2]};
+      for (int i = 0; i < 3; ++i) {
+        ASSERT_LT(corners[static_cast<std::size_t>(i)], edges.vertices);
+        ++sides[{corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % 3)]}];
+      }
+      std::ranges::sort(corners);
+      ASSERT_TRUE(corners[0] != corners[1] && corners[1] != corners[2]) << "degenerate";
+      ASSERT_TRUE(seen.insert(corners).second) << "the same triangle twice, seed " << kSeed << ", round " << round;
+    }
+    const auto in_faces = [&](const CrossedEdge& e) {
+      unsigned mask = 0;
+      if (e.axis != 0) mask |= (e.x == 0 ? 1U : 0U) | (e.x == cells ? 2U : 0U);
+      if (e.axis != 1) mask |= (e.y == 0 ? 4U : 0U) | (e.y == cells ? 8U : 0U);
+      if (e.axis != 2) mask |= (e.z == 0 ? 16U : 0U) | (e.z == cells ? 32U : 0U);
+      return mask;
+    };
+    for (const auto& [side, uses] : sides) {
+      const auto back = sides.find({side.second, side.first});
+      const int other = back == sides.end() ? 0 : back->second;
+      if (uses == other) continue;
+      ASSERT_NE(in_faces(vertices[side.first]) & in_faces(vertices[side.second]), 0U)
+          << "open inside the chunk, seed " << kSeed << ", round " << round;
+    }
+  }
+}
+
+TEST(Extract, KeepsCrossingsStrictlyInsideTheirEdge) {
+  EXPECT_EQ(crossing_step(-1.0f, 1.0f), kStepsPerCell / 2);
+  EXPECT_EQ(crossing_step(-1e-30f, 5.0f), 1);
+  EXPECT_EQ(crossing_step(0.0f, -5.0f), 1);
+  EXPECT_EQ(crossing_step(5.0f, -1e-30f), kStepsPerCell - 1);
+  testing::Random random(kSeed);
+  for (int i = 0; i < 10'000; ++i) {
+    const auto a = static_cast<float>(random.real(0, 10));
+    const auto b = static_cast<float>(random.real(-10, -1e-6));
+    // One edge, seen from its two ends: the same place.
+    EXPECT_NEAR(crossing_step(a, b), kStepsPerCell - crossing_step(b, a), 1);
+  }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,141 @@
+#include "core/world/world_function.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "core/world/density.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/simd_targets.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint64_t kSeed = 4711;
+
+std::size_t index(const ColumnBlock& block, int i, int k) {
+  return static_cast<std::size_t>(k) * block.stride + static_cast<std::size_t>(i);
+}
+
+bool same_column(const ColumnBlock& a, int ai, int ak, const ColumnBlock& b, int bi, int bk) {
+  const auto same = [&](const std::vector<float>& x, const std::vector<float>& y) {
+    return std::memcmp(&x[index(a, ai, ak)], &y[index(b, bi, bk)], sizeof(float)) == 0;
+  };
+  return same(a.height_m, b.height_m) && same(a.slope_x, b.slope_x) && same(a.slope_z, b.slope_z) &&
+         same(a.steepness, b.steepness) && same(a.ridge, b.ridge) && same(a.hilliness, b.hilliness);
+}
+
+TEST(WorldFunction, GivesAColumnTheSameBitsInEveryGridAndAtEveryLod) {
+  const WorldFunction world{Manifest()};
+  testing::Random random(kSeed);
+  ColumnBlock one;
+  ColumnBlock many;
+  for (int round = 0; round < 200; ++round) {
+    const int lod = static_cast<int>(random.whole(0, 12));
+    const std::int64_t step = std::int64_t{1} << lod;
+    const std::int64_t reach = round % 2 == 0 ? 1'000 : 1'000'000'000 / step;
+    const ColumnGrid grid{random.whole(-reach, reach) * step,    random.whole(-reach, reach) * step,   step,
+                          static_cast<int>(random.whole(1, 40)), static_cast<int>(random.whole(1, 6)), 1.0};
+    world.columns(grid, many);
+    const int i = static_cast<int>(random.whole(0, grid.width - 1));
+    const int k = static_cast<int>(random.whole(0, grid.depth - 1));
+    world.columns({grid.x_voxel + i * step, grid.z_voxel + k * step, 1, 1, 1, 1.0}, one);
+    ASSERT_TRUE(same_column(one, 0, 0, many, i, k)) << "seed " << kSeed << ", round " << round;
+  }
+}
+
+TEST(WorldFunction, GivesTheSameBitsOnEveryTarget) {
+  const WorldFunction world{Manifest()};
+  const ColumnGrid grid{999'999'000, -1'000'000'123, 2, 35, 35, 1.0};
+  ColumnBlock best;
+  world.columns(grid, best);
+  const int targets = testing::for_each_simd_target([&](const char* target) {
+    ColumnBlock block;
+    world.columns(grid, block);
+    for (int k = 0; k < 35; ++k) {
+      for (int i = 0; i < 35; ++i) ASSERT_TRUE(same_column(block, i, k, best, i, k)) << target;
+    }
+  });
+  EXPECT_GE(targets, 2) << "nothing was compared";
+}
+
+TEST(WorldFunction, IsSharedByThreadsWithoutAnyoneNoticing) {
+  const WorldFunction world{Manifest()};
+  const auto run = [&](std::int64_t x) {
+    ColumnBlock block;
+    world.columns({x, -x, 1, 48, 8, 1.0}, block);
+    return block.height_m;
+  };
+  std::vector<std::vector<float>> alone;
+  for (std::int64_t t = 0; t < 8; ++t) alone.push_back(run(t * 5'000));
+  std::vector<std::vector<float>> together(8);
+  std::vector<std::jthread> threads;
+  for (std::int64_t t = 0; t < 8; ++t) {
+    threads.emplace_back([&, t] { together[static_cast<std::size_t>(t)] = run(t * 5'000); });
+  }
+  threads.clear();
+  EXPECT_EQ(alone, together);
+}
+
+TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
+  const WorldFunction world{Manifest()};
+  const glm::dvec2 range = world.height_range_m();
+  testing::Random random(kSeed);
+  ColumnBlock block;
+  for (int round = 0; round < 60; ++round) {
+    world.columns({random.whole(-2'000'000'000, 2'000'000'000), random.whole(-60'000, 60'000), 1, 128, 16, 0.25},
+                  block);
+    for (int k = 0; k < 16; ++k) {
+      for (int i = 0; i < 128; ++i) {
+        const double height = static_cast<double>(block.height_m[index(block, i, k)]);
+        ASSERT_GE(height, range.x);
+        ASSERT_LE(height, range.y);
+        if (i > 0) {
+          const double rise = std::abs(height - static_cast<double>(block.height_m[index(block, i - 1, k)]));
+          ASSERT_LT(rise, 0.25 * 8.0) << "a wall steeper than 8 : 1, seed " << kSeed << ", round " << round;
+        }
+      }
+    }
+  }
+}
+
+TEST(Density, IsNegativeInsideRockAndDependsOnColumnAndHeightAlone) {
+  const WorldFunction world{Manifest()};
+  ColumnBlock block;
+  world.columns({1'000, 2'000, 4, 20, 20, 1.0}, block);
+  const auto middle = static_cast<std::int64_t>(block.height_low_m) / 4 * 4;
+  const int layers = 24;
+  std::vector<float> samples(density_floats(block.grid, layers));
+  const DensityBox box = sample_density(block, middle - 40, layers, samples);
+  for (int j = 0; j < layers; ++j) {
+    for (int k = 0; k < 20; ++k) {
+      for (int i = 0; i < 20; ++i) {
+        const float value =
+            samples[(static_cast<std::size_t>(j) * box.depth + static_cast<std::size_t>(k)) * box.stride +
+                    static_cast<std::size_t>(i)];
+        const float y = static_cast<float>(middle - 40 + 4 * j);
+        ASSERT_EQ(value < 0.0f, y < block.height_m[index(block, i, k)]);
+      }
+    }
+  }
+  std::vector<float> shifted(density_floats(block.grid, 3));
+  const DensityBox part = sample_density(block, middle - 40 + 4 * 5, 3, shifted);
+  for (std::size_t n = 0; n < part.depth * part.stride - 16; ++n) {
+    if (n % part.stride >= 20) continue;
+    ASSERT_EQ(shifted[n], samples[5 * box.depth * box.stride + n]);
+  }
+}
+
+TEST(Cover, PutsSandOnShoresSnowOnSummitsAndRockOnWalls) {
+  const WorldFunction world{Manifest()};
+  EXPECT_EQ(world.cover(1.0f, 1.0f, 0.0f, 0.1f, {0, 0}), Material::kSand);
+  EXPECT_EQ(world.cover(200.0f, 0.98f, 0.0f, 0.3f, {5, 9}), Material::kGrass);
+  EXPECT_EQ(world.cover(2'000.0f, 0.95f, 0.2f, 1.0f, {5, 9}), Material::kSnow);
+  EXPECT_EQ(world.cover(500.0f, 0.2f, 0.2f, 1.0f, {5, 9}), Material::kRock);
+}
+
+}  // namespace
+}  // namespace talus
