@@ -3,8 +3,9 @@
 //
 // Radius r(L) = near_m * 2^-lod_bias * 2^L, at least kNearEdgesMin edges at LOD 0. A node of LOD L >= 1 is split when
 // its box is nearer than r(L - 1). Start from every LOD kViewLodMax chunk that meets the heights of the world and lies
-// within far_m of the viewer (horizontally); a leaf further than far_m is dropped. Distances are Euclidean, from the
-// viewer to the nearest point of a box. Why neighbours differ by at most one: DECISIONS.md, "Interest area".
+// within far_m of the viewer (horizontally); a node that is further than far_m or does not meet the heights is dropped,
+// at every LOD. Distances are Euclidean, from the viewer to the nearest point of a box. Why neighbours differ by at
+// most one: SPEC.md, "Interest area".
 #pragma once
 
 #include <vector>

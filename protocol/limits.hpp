@@ -18,6 +18,20 @@ inline constexpr std::size_t kOutboundMessageBytesMax = 1024 * 1024;
 inline constexpr std::size_t kKeysPerMessageMax = 2600;
 inline constexpr std::size_t kWantedKeysMax = 16'384;
 
+/// `u32 head_bytes` before every head.
+inline constexpr std::size_t kPrefixBytes = 4;
+/// Largest head. A `welcome` carries the manifest; all else is far below 64 KiB.
+inline constexpr std::size_t kHeadBytesMax = 128 * 1024;
+/// Prefix and head of any `chunk` message; what is left of kOutboundMessageBytesMax is its payload.
+inline constexpr std::size_t kChunkHeadBytesMax = 128;
+/// Bytes of texts inside messages, UTF-8: names (world, session, format, world hash), tokens, sentences.
+inline constexpr std::size_t kNameBytesMax = 64;
+inline constexpr std::size_t kTokenBytesMax = 1024;
+inline constexpr std::size_t kTextBytesMax = 512;
+inline constexpr std::size_t kManifestJsonBytesMax = 96 * 1024;
+inline constexpr std::size_t kFormatsMax = 16;   ///< entries of hello.formats
+inline constexpr std::size_t kVersionsMax = 64;  ///< entries of refused.versions
+
 /// Coarsest LOD of an interest area.
 inline constexpr int kViewLodMax = 8;
 /// LOD 0 reaches at least this many chunk edges: below 2 * sqrt(3) = 3.47 neighbouring chunks could differ by two LODs.

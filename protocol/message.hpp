@@ -94,8 +94,10 @@ using Message = std::variant<Hello, Welcome, Refused, ViewMessage, ViewAccepted,
                              Credit, Ping, Pong, Bye>;
 std::string_view name_of(const Message& message);
 std::string_view name_of(ByeReason reason);
+std::string_view name_of(RefusedReason reason);
 
-/// Prefix and head; a chunk's payload is sent right behind it, never copied into it.
+/// Prefix and head; a chunk's payload is sent right behind it, never copied into it. Requires lists within
+/// kKeysPerMessageMax and a payload exactly when the chunk is a mesh.
 std::vector<std::byte> encode(const Message& message);
 
 enum class MessageError { kTooShort, kTooLarge, kMalformed, kUnknown, kBadKey };

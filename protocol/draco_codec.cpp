@@ -1,0 +1,248 @@
+// ChunkMesh <-> Draco. Encoding trusts its mesh; decoding trusts nothing: every count that Draco would allocate for is
+// read and bounded first, and a result off the lattice is malformed.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <memory>
+
+#include <draco/compression/expert_encode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/mesh/mesh.h>
+
+#include "core/base/check.hpp"
+#include "protocol/limits.hpp"
+#include "protocol/mesh_codec.hpp"
+
+namespace talus::protocol {
+namespace {
+
+/// Attributes in the order they are added, which makes these their unique ids.
+enum AttributeId : int { kPosition, kNormal, kMaterial, kRidge, kAttributes };
+
+/// Marching cubes makes at most 5 triangles a cell; `cells` is at most 32 in any world.
+constexpr int kCellsMax = 32;
+constexpr std::size_t faces_max(int cells) {
+  return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) * 5;
+}
+
+bool is_power_of_two(double v) {
+  int exponent = 0;
+  return std::isfinite(v) && v > 0 && std::frexp(v, &exponent) == 0.5;
+}
+
+/// Steps per chunk edge.
+int steps_of(const MeshLattice& lattice) { return lattice.cells * kStepsPerCell; }
+
+/// One bit more than log2(steps), so that the last step, `steps` itself, has a code.
+int position_bits(const MeshLattice& lattice) {
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(steps_of(lattice) - 1))) + 1;
+}
+
+/// The range at which Draco's quantisation step is exactly step_m: a round range would match no vertex of a neighbour.
+float position_range(const MeshLattice& lattice) {
+  return static_cast<float>((1 << position_bits(lattice)) - 1) * static_cast<float>(lattice.step_m);
+}
+
+/// Adds an attribute with one value per point; returns where its values go.
+std::uint8_t* add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data,
+                            std::int8_t components, std::size_t values) {
+  auto attribute = std::make_unique<draco::PointAttribute>();
+  attribute->Init(type, components, data, false, values);
+  attribute->SetIdentityMapping();
+  const int id = mesh.AddAttribute(std::move(attribute));
+  return mesh.attribute(id)->GetAddress(draco::AttributeValueIndex(0));
+}
+
+void fill(draco::Mesh& out, const ChunkMesh& mesh, const MeshLattice& lattice) {
+  const std::size_t vertices = mesh.positions.size();
+  out.set_num_points(static_cast<std::uint32_t>(vertices));
+  out.SetNumFaces(mesh.triangles());
+  for (std::size_t i = 0; i < mesh.triangles(); ++i) {
+    const std::uint32_t* corner = mesh.indices.data() + 3 * i;
+    out.SetFace(draco::FaceIndex(static_cast<std::uint32_t>(i)),
+                {draco::PointIndex(corner[0]), draco::PointIndex(corner[1]), draco::PointIndex(corner[2])});
+  }
+  const auto step = static_cast<float>(lattice.step_m);
+  std::uint8_t* positions =
+      add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, vertices);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    // Exact: at most 12 bits times a power of two.
+    const glm::vec3 metres = glm::vec3(mesh.positions[i]) * step;
+    std::memcpy(positions + i * sizeof metres, &metres, sizeof metres);
+  }
+  std::uint8_t* normals = add_attribute(out, draco::GeometryAttribute::NORMAL, draco::DT_FLOAT32, 3, vertices);
+  std::memcpy(normals, mesh.normals.data(), vertices * sizeof(glm::vec3));
+  std::memcpy(add_attribute(out, draco::GeometryAttribute::GENERIC, draco::DT_UINT8, 1, vertices),
+              mesh.materials.data(), vertices);
+  std::memcpy(add_attribute(out, draco::GeometryAttribute::GENERIC, draco::DT_UINT8, 1, vertices), mesh.ridges.data(),
+              vertices);
+}
+
+/// Draco's decoder with a door between reading what a mesh declares and allocating for it.
+class BoundedDecoder final : public draco::MeshEdgebreakerDecoder {
+ public:
+  explicit BoundedDecoder(std::size_t points_max) : points_max_(points_max) {}
+
+ protected:
+  bool DecodeAllAttributes() override {
+    static constexpr std::array<draco::GeometryAttribute::Type, kAttributes> kTypes{
+        draco::GeometryAttribute::POSITION, draco::GeometryAttribute::NORMAL, draco::GeometryAttribute::GENERIC,
+        draco::GeometryAttribute::GENERIC};
+    const draco::PointCloud& cloud = *point_cloud();
+    if (cloud.num_points() > points_max_ || cloud.num_attributes() != kAttributes) return false;
+    for (int id = 0; id < kAttributes; ++id) {
+      const draco::PointAttribute& attribute = *cloud.attribute(id);
+      const bool is_vector = id == kPosition || id == kNormal;
+      if (attribute.unique_id() != static_cast<std::uint32_t>(id)) return false;
+      if (attribute.attribute_type() != kTypes[static_cast<std::size_t>(id)]) return false;
+      if (attribute.data_type() != (is_vector ? draco::DT_FLOAT32 : draco::DT_UINT8)) return false;
+      if (attribute.num_components() != (is_vector ? 3 : 1)) return false;
+    }
+    return draco::MeshEdgebreakerDecoder::DecodeAllAttributes();
+  }
+
+ private:
+  std::size_t points_max_;
+};
+
+/// Reads Draco's header and the counts behind it: version 2.2, a mesh, edgebreaker, no metadata, counts a chunk can have.
+bool counts_are_bounded(std::span<const std::byte> bytes, std::size_t triangles_max) {
+  static constexpr std::array<std::uint8_t, 9> kHeader{'D', 'R', 'A', 'C', 'O', 2, 2, draco::TRIANGULAR_MESH,
+                                                       draco::MESH_EDGEBREAKER_ENCODING};
+  if (bytes.size() < kHeader.size() || std::memcmp(bytes.data(), kHeader.data(), kHeader.size()) != 0) return false;
+  draco::DecoderBuffer rest;
+  rest.Init(reinterpret_cast<const char*>(bytes.data()) + kHeader.size(), bytes.size() - kHeader.size());
+  rest.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
+  std::uint16_t flags = 0;
+  std::uint8_t traversal = 0;
+  std::uint8_t attribute_data = 0;
+  std::uint32_t vertices = 0;
+  std::uint32_t faces = 0;
+  if (!rest.Decode(&flags) || flags != 0) return false;
+  if (!rest.Decode(&traversal) ||
+      (traversal != draco::MESH_EDGEBREAKER_STANDARD_ENCODING && traversal != draco::MESH_EDGEBREAKER_VALENCE_ENCODING)) {
+    return false;
+  }
+  if (!draco::DecodeVarint(&vertices, &rest) || !draco::DecodeVarint(&faces, &rest) || !rest.Decode(&attribute_data)) {
+    return false;
+  }
+  return faces > 0 && faces <= triangles_max && vertices <= 3 * faces && attribute_data <= kAttributes;
+}
+
+/// Steps of a coordinate in metres, or -1 off the lattice.
+int steps_at(float metres, const MeshLattice& lattice) {
+  const float steps = metres / static_cast<float>(lattice.step_m);
+  if (!(steps >= 0.0F && steps <= static_cast<float>(steps_of(lattice)))) return -1;
+  const int whole = static_cast<int>(steps);
+  return static_cast<float>(whole) == steps ? whole : -1;
+}
+
+template <typename T>
+void copy_values(const draco::PointAttribute& from, std::size_t points, std::vector<T>& out) {
+  out.resize(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    from.GetMappedValue(draco::PointIndex(static_cast<std::uint32_t>(i)), &out[i]);
+  }
+}
+
+/// False when a position is off the lattice or a normal has no direction.
+bool take(const draco::Mesh& mesh, const MeshLattice& lattice, ChunkMesh& out) {
+  const std::size_t points = mesh.num_points();
+  out.positions.resize(points);
+  std::vector<glm::vec3> metres;
+  copy_values(*mesh.attribute(kPosition), points, metres);
+  for (std::size_t i = 0; i < points; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int steps = steps_at(metres[i][axis], lattice);
+      if (steps < 0) return false;
+      out.positions[i][axis] = static_cast<std::uint16_t>(steps);
+    }
+  }
+  copy_values(*mesh.attribute(kNormal), points, out.normals);
+  for (glm::vec3& normal : out.normals) {
+    const float length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    if (!(length > 0.5F && length < 2.0F)) return false;
+    normal /= length;
+  }
+  copy_values(*mesh.attribute(kMaterial), points, out.materials);
+  copy_values(*mesh.attribute(kRidge), points, out.ridges);
+  out.indices.reserve(3 * static_cast<std::size_t>(mesh.num_faces()));
+  for (std::uint32_t i = 0; i < mesh.num_faces(); ++i) {
+    for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(i))) {
+      if (corner.value() >= points) return false;
+      out.indices.push_back(corner.value());
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string_view describe(CodecError error) {
+  switch (error) {
+    case CodecError::kMalformed:
+      return "the payload is not a chunk of this lattice";
+    case CodecError::kTooLarge:
+      return "the payload is longer than a message may be";
+    case CodecError::kEmpty:
+      return "a mesh without triangles has no payload";
+    case CodecError::kInternal:
+      return "the codec failed on a mesh of our own";
+  }
+  return "unknown";
+}
+
+MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m) {
+  return {cells, std::ldexp(voxel_m, key.lod) / kStepsPerCell};
+}
+
+std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
+                                                               int speed) {
+  TALUS_CHECK(lattice.cells > 0 && lattice.cells <= kCellsMax && is_power_of_two(lattice.step_m));
+  TALUS_CHECK(mesh.normals.size() == mesh.positions.size() && mesh.materials.size() == mesh.positions.size() &&
+              mesh.ridges.size() == mesh.positions.size());
+  TALUS_CHECK(speed >= 0 && speed <= 10);
+  if (mesh.indices.empty()) return std::unexpected(CodecError::kEmpty);
+
+  draco::Mesh staged;
+  fill(staged, mesh, lattice);
+  draco::ExpertEncoder encoder(staged);
+  encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+  encoder.SetSpeedOptions(speed, speed);
+  constexpr std::array<float, 3> kOrigin{};
+  encoder.SetAttributeExplicitQuantization(kPosition, position_bits(lattice), 3, kOrigin.data(),
+                                           position_range(lattice));
+  encoder.SetAttributeQuantization(kNormal, kNormalBits);
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeToBuffer(&buffer).ok()) return std::unexpected(CodecError::kInternal);
+  if (buffer.size() > kOutboundMessageBytesMax - kChunkHeadBytesMax) return std::unexpected(CodecError::kTooLarge);
+  std::vector<std::byte> out(buffer.size());
+  std::memcpy(out.data(), buffer.data(), buffer.size());
+  return out;
+}
+
+std::expected<ChunkMesh, CodecError> decode_draco(std::span<const std::byte> bytes, const MeshLattice& lattice) {
+  TALUS_CHECK(lattice.cells > 0 && lattice.cells <= kCellsMax && is_power_of_two(lattice.step_m));
+  if (bytes.size() > kOutboundMessageBytesMax) return std::unexpected(CodecError::kTooLarge);
+  const std::size_t triangles_max = faces_max(lattice.cells);
+  if (!counts_are_bounded(bytes, triangles_max)) return std::unexpected(CodecError::kMalformed);
+  // Draco reports most faults; those it meets as standard exceptions (a length that no vector has) are faults as well.
+  try {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    draco::Mesh mesh;
+    BoundedDecoder decoder(3 * triangles_max);
+    const draco::DecoderOptions options;
+    if (!decoder.Decode(options, &buffer, &mesh).ok()) return std::unexpected(CodecError::kMalformed);
+    ChunkMesh out;
+    if (!take(mesh, lattice, out)) return std::unexpected(CodecError::kMalformed);
+    return out;
+  } catch (const std::exception&) {
+    return std::unexpected(CodecError::kMalformed);
+  }
+}
+
+}  // namespace talus::protocol
