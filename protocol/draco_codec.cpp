@@ -34,7 +34,9 @@ bool is_power_of_two(double v) {
 }
 
 /// Steps per chunk edge.
-int steps_of(const MeshLattice& lattice) { return lattice.cells * kStepsPerCell; }
+int steps_of(const MeshLattice& lattice) {
+  return lattice.cells * kStepsPerCell;
+}
 
 /// One bit more than log2(steps), so that the last step, `steps` itself, has a code.
 int position_bits(const MeshLattice& lattice) {
@@ -66,8 +68,7 @@ void fill(draco::Mesh& out, const ChunkMesh& mesh, const MeshLattice& lattice) {
                 {draco::PointIndex(corner[0]), draco::PointIndex(corner[1]), draco::PointIndex(corner[2])});
   }
   const auto step = static_cast<float>(lattice.step_m);
-  std::uint8_t* positions =
-      add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, vertices);
+  std::uint8_t* positions = add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
     // Exact: at most 12 bits times a power of two.
     const glm::vec3 metres = glm::vec3(mesh.positions[i]) * step;
@@ -108,10 +109,11 @@ class BoundedDecoder final : public draco::MeshEdgebreakerDecoder {
   std::size_t points_max_;
 };
 
-/// Reads Draco's header and the counts behind it: version 2.2, a mesh, edgebreaker, no metadata, counts a chunk can have.
+/// Reads Draco's header and the counts behind it: version 2.2, a mesh, edgebreaker, no metadata, counts a chunk can
+/// have.
 bool counts_are_bounded(std::span<const std::byte> bytes, std::size_t triangles_max) {
-  static constexpr std::array<std::uint8_t, 9> kHeader{'D', 'R', 'A', 'C', 'O', 2, 2, draco::TRIANGULAR_MESH,
-                                                       draco::MESH_EDGEBREAKER_ENCODING};
+  static constexpr std::array<std::uint8_t, 9> kHeader{
+      'D', 'R', 'A', 'C', 'O', 2, 2, draco::TRIANGULAR_MESH, draco::MESH_EDGEBREAKER_ENCODING};
   if (bytes.size() < kHeader.size() || std::memcmp(bytes.data(), kHeader.data(), kHeader.size()) != 0) return false;
   draco::DecoderBuffer rest;
   rest.Init(reinterpret_cast<const char*>(bytes.data()) + kHeader.size(), bytes.size() - kHeader.size());
@@ -122,8 +124,8 @@ bool counts_are_bounded(std::span<const std::byte> bytes, std::size_t triangles_
   std::uint32_t vertices = 0;
   std::uint32_t faces = 0;
   if (!rest.Decode(&flags) || flags != 0) return false;
-  if (!rest.Decode(&traversal) ||
-      (traversal != draco::MESH_EDGEBREAKER_STANDARD_ENCODING && traversal != draco::MESH_EDGEBREAKER_VALENCE_ENCODING)) {
+  if (!rest.Decode(&traversal) || (traversal != draco::MESH_EDGEBREAKER_STANDARD_ENCODING &&
+                                   traversal != draco::MESH_EDGEBREAKER_VALENCE_ENCODING)) {
     return false;
   }
   if (!draco::DecodeVarint(&vertices, &rest) || !draco::DecodeVarint(&faces, &rest) || !rest.Decode(&attribute_data)) {

@@ -40,7 +40,9 @@ double edge_of(const WorldShape& shape, int lod) {
 }
 
 /// Distance along one axis from `at` to the closed interval; 0 inside.
-double gap(double at, double low, double high) { return std::max({low - at, at - high, 0.0}); }
+double gap(double at, double low, double high) {
+  return std::max({low - at, at - high, 0.0});
+}
 
 /// Squared Euclidean distance to the nearest point of a box. The order of the sum is part of SPEC.md.
 double distance2(const glm::dvec3& at, const BoxWorld& box) {

@@ -13,8 +13,12 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-wire::Key wire_key(const ChunkKey& key) { return {key.lod, key.x, key.y, key.z}; }
-wire::Vec3 wire_vec(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+wire::Key wire_key(const ChunkKey& key) {
+  return {key.lod, key.x, key.y, key.z};
+}
+wire::Vec3 wire_vec(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 Offset<flatbuffers::Vector<const wire::HeldKey*>> wire_held(FlatBufferBuilder& builder,
                                                             const std::vector<HeldChunk>& chunks) {
@@ -37,17 +41,16 @@ struct UnionWriter {
     const auto token = builder.CreateString(m.token);
     const auto list = builder.CreateVector(formats);
     const auto client = builder.CreateString(m.client);
-    return {wire::Message::Hello,
-            wire::CreateHello(builder, m.version_low, m.version_high, world, token, list, m.credit_bytes, client)
-                .Union()};
+    return {
+        wire::Message::Hello,
+        wire::CreateHello(builder, m.version_low, m.version_high, world, token, list, m.credit_bytes, client).Union()};
   }
   Written operator()(const Welcome& m) const {
     const auto session = builder.CreateString(m.session);
     const auto hash = builder.CreateString(m.world_hash);
     const auto format = builder.CreateString(m.format);
     const auto manifest = builder.CreateString(m.manifest_json);
-    return {wire::Message::Welcome,
-            wire::CreateWelcome(builder, m.version, session, hash, format, manifest).Union()};
+    return {wire::Message::Welcome, wire::CreateWelcome(builder, m.version, session, hash, format, manifest).Union()};
   }
   Written operator()(const Refused& m) const {
     const auto message = builder.CreateString(m.message);
@@ -79,9 +82,9 @@ struct UnionWriter {
     TALUS_CHECK((m.kind == ChunkKind::kMesh) == (m.payload_bytes != 0));
     TALUS_CHECK(m.payload_bytes <= kOutboundMessageBytesMax - kChunkHeadBytesMax);
     const wire::Key key = wire_key(m.key);
-    return {wire::Message::Chunk,
-            wire::CreateChunk(builder, &key, m.revision, static_cast<wire::ChunkKind>(m.kind), m.payload_bytes)
-                .Union()};
+    return {
+        wire::Message::Chunk,
+        wire::CreateChunk(builder, &key, m.revision, static_cast<wire::ChunkKind>(m.kind), m.payload_bytes).Union()};
   }
   Written operator()(const Leave& m) const {
     TALUS_CHECK(m.keys.size() <= kKeysPerMessageMax);
@@ -96,12 +99,8 @@ struct UnionWriter {
   Written operator()(const Credit& m) const {
     return {wire::Message::Credit, wire::CreateCredit(builder, m.bytes).Union()};
   }
-  Written operator()(const Ping& m) const {
-    return {wire::Message::Ping, wire::CreatePing(builder, m.nonce).Union()};
-  }
-  Written operator()(const Pong& m) const {
-    return {wire::Message::Pong, wire::CreatePong(builder, m.nonce).Union()};
-  }
+  Written operator()(const Ping& m) const { return {wire::Message::Ping, wire::CreatePing(builder, m.nonce).Union()}; }
+  Written operator()(const Pong& m) const { return {wire::Message::Pong, wire::CreatePong(builder, m.nonce).Union()}; }
   Written operator()(const Bye& m) const {
     const auto message = builder.CreateString(m.message);
     return {wire::Message::Bye, wire::CreateBye(builder, static_cast<wire::ByeReason>(m.reason), message).Union()};

@@ -122,7 +122,9 @@ TEST(DracoCodec, WritesTheSameBytesForTheSameMesh) {
   EXPECT_EQ(*encode_draco(mesh, kUnit), *encode_draco(mesh, kUnit));
 }
 
-TEST(DracoCodec, RefusesToEncodeNothing) { EXPECT_EQ(encode_draco({}, kUnit).error(), CodecError::kEmpty); }
+TEST(DracoCodec, RefusesToEncodeNothing) {
+  EXPECT_EQ(encode_draco({}, kUnit).error(), CodecError::kEmpty);
+}
 
 TEST(DracoCodec, RefusesALatticeThatIsNotTheOneEncodedFor) {
   const auto bytes = encode_draco(sample_surface(32, 5), kUnit);
@@ -153,7 +155,7 @@ TEST(DracoCodec, SurvivesRandomMutations) {
       bytes[random() % window] = static_cast<std::byte>(random());
     }
     const auto decoded = decode_draco(bytes, lattice);
-    refused += decoded ? 0 : 1;
+    refused += decoded ? 0U : 1U;
     if (!decoded) continue;
     for (const glm::u16vec3& p : decoded->positions) {
       ASSERT_LE(std::max({p.x, p.y, p.z}), 16 * kStepsPerCell);
