@@ -7,17 +7,9 @@
 #include <vector>
 
 #include "core/world/manifest.hpp"
+#include "protocol/toml_reader.hpp"
 
 namespace talus::protocol {
-
-/// One thing wrong with a text, ready to print: "worlds/alps.toml:12: erosion.gain: 3 is out of range, allowed 0..1".
-struct TextFault {
-  std::string file;
-  std::uint32_t line = 0;  ///< from 1; 0 when the fault has no place
-  std::string key;
-  std::string message;
-};
-std::string describe(const TextFault& fault);
 
 /// Reads and validates. Every fault is reported: unknown keys with the nearest known one, wrong types, values out of
 /// range with the allowed range, contradictions. `file` only labels faults. Texts over 1 MiB are refused.
@@ -30,7 +22,8 @@ std::string format_manifest(const Manifest& manifest);
 /// 64 hexadecimal digits: SHA-256 of canonical_bytes(manifest).
 std::string world_hash(const Manifest& manifest);
 
-/// The body of GET /v1/worlds/{world}.
+/// The body of GET /v1/worlds/{world}. `seed` is a text: clients whose numbers are doubles would lose bits above 2^53.
+/// `height_range_m` is WorldFunction::height_range_m() of this manifest.
 std::string manifest_json(const Manifest& manifest);
 
 }  // namespace talus::protocol
