@@ -11,8 +11,10 @@
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
+#include <glm/common.hpp>
 
 #include "core/base/check.hpp"
+#include "protocol/coloured_draco.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/mesh_codec.hpp"
 
@@ -20,7 +22,8 @@ namespace talus::protocol {
 namespace {
 
 /// Attributes in the order they are added, which makes these their unique ids.
-enum AttributeId : int { kPosition, kNormal, kMaterial, kRidge, kAttributes };
+enum AttributeId : int { kPosition, kNormal, kMaterial, kRidge, kAttributes, kColour = kAttributes };
+static_assert(kMaterial == kDracoMaterialId && kRidge == kDracoRidgeId && kColour == kDracoColourId);
 
 /// Marching cubes makes at most 5 triangles a cell; `cells` is at most 32 in any world.
 constexpr int kCellsMax = 32;
@@ -181,6 +184,30 @@ bool take(const draco::Mesh& mesh, const MeshLattice& lattice, ChunkMesh& out) {
   return true;
 }
 
+void check_encodable(const ChunkMesh& mesh, const MeshLattice& lattice, int speed) {
+  TALUS_CHECK(lattice.cells > 0 && lattice.cells <= kCellsMax && is_power_of_two(lattice.step_m));
+  TALUS_CHECK(mesh.normals.size() == mesh.positions.size() && mesh.materials.size() == mesh.positions.size() &&
+              mesh.ridges.size() == mesh.positions.size());
+  TALUS_CHECK(speed >= 0 && speed <= 10);
+}
+
+std::expected<std::vector<std::byte>, CodecError> compress(const draco::Mesh& staged, const MeshLattice& lattice,
+                                                           int speed) {
+  draco::ExpertEncoder encoder(staged);
+  encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+  encoder.SetSpeedOptions(speed, speed);
+  constexpr std::array<float, 3> kOrigin{};
+  encoder.SetAttributeExplicitQuantization(kPosition, position_bits(lattice), 3, kOrigin.data(),
+                                           position_range(lattice));
+  encoder.SetAttributeQuantization(kNormal, kNormalBits);
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeToBuffer(&buffer).ok()) return std::unexpected(CodecError::kInternal);
+  if (buffer.size() > kOutboundMessageBytesMax - kChunkHeadBytesMax) return std::unexpected(CodecError::kTooLarge);
+  std::vector<std::byte> out(buffer.size());
+  std::memcpy(out.data(), buffer.data(), buffer.size());
+  return out;
+}
+
 }  // namespace
 
 std::string_view describe(CodecError error) {
@@ -203,26 +230,44 @@ MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m) {
 
 std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
                                                                int speed) {
-  TALUS_CHECK(lattice.cells > 0 && lattice.cells <= kCellsMax && is_power_of_two(lattice.step_m));
-  TALUS_CHECK(mesh.normals.size() == mesh.positions.size() && mesh.materials.size() == mesh.positions.size() &&
-              mesh.ridges.size() == mesh.positions.size());
-  TALUS_CHECK(speed >= 0 && speed <= 10);
+  check_encodable(mesh, lattice, speed);
   if (mesh.indices.empty()) return std::unexpected(CodecError::kEmpty);
-
   draco::Mesh staged;
   fill(staged, mesh, lattice);
-  draco::ExpertEncoder encoder(staged);
-  encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-  encoder.SetSpeedOptions(speed, speed);
-  constexpr std::array<float, 3> kOrigin{};
-  encoder.SetAttributeExplicitQuantization(kPosition, position_bits(lattice), 3, kOrigin.data(),
-                                           position_range(lattice));
-  encoder.SetAttributeQuantization(kNormal, kNormalBits);
-  draco::EncoderBuffer buffer;
-  if (!encoder.EncodeToBuffer(&buffer).ok()) return std::unexpected(CodecError::kInternal);
-  if (buffer.size() > kOutboundMessageBytesMax - kChunkHeadBytesMax) return std::unexpected(CodecError::kTooLarge);
-  std::vector<std::byte> out(buffer.size());
-  std::memcpy(out.data(), buffer.data(), buffer.size());
+  return compress(staged, lattice, speed);
+}
+
+std::expected<ColouredDraco, CodecError> encode_coloured_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
+                                                               std::span<const glm::u16vec3> palette, int speed) {
+  check_encodable(mesh, lattice, speed);
+  TALUS_CHECK(!palette.empty());
+  if (mesh.indices.empty()) return std::unexpected(CodecError::kEmpty);
+  draco::Mesh staged;
+  fill(staged, mesh, lattice);
+  std::uint8_t* colours =
+      add_attribute(staged, draco::GeometryAttribute::COLOR, draco::DT_UINT16, 3, mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+    const glm::u16vec3& colour = palette[mesh.materials[i] < palette.size() ? mesh.materials[i] : 0];
+    std::memcpy(colours + i * sizeof colour, &colour, sizeof colour);
+  }
+  auto bytes = compress(staged, lattice, speed);
+  if (!bytes) return std::unexpected(bytes.error());
+
+  // Edgebreaker splits vertices that are not manifold and drops flat triangles: only a decoder knows what is left.
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  draco::Mesh decoded;
+  draco::MeshEdgebreakerDecoder decoder;
+  const draco::DecoderOptions options;
+  ChunkMesh seen;
+  if (!decoder.Decode(options, &buffer, &decoded).ok() || !take(decoded, lattice, seen) || seen.positions.empty()) {
+    return std::unexpected(CodecError::kInternal);
+  }
+  ColouredDraco out{std::move(*bytes), seen.positions.size(), seen.triangles(), seen.positions[0], seen.positions[0]};
+  for (const glm::u16vec3& position : seen.positions) {
+    out.low = glm::min(out.low, position);
+    out.high = glm::max(out.high, position);
+  }
   return out;
 }
 
