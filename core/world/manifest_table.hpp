@@ -38,7 +38,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"erosion.rounding_ridge", "", 0, 1, 0.05, false, "Rounding of ridges: more means softer crests."},
   {"erosion.rounding_crease", "", 0, 1, 0.03, false, "Rounding of creases: more means valley floors filled with sediment."},
   {"erosion.rounding_input", "", 0, 10, 0.1, false, "Rounding of the peaks and valleys that were there before: more means softer ones."},
-  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next; the lacunarity keeps one size at every octave."},
+  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next: more rounds finer gullies more, the lacunarity keeps one size at every octave."},
   {"erosion.onset_input", "", 0.01, 10, 1.25, false, "Slope of the input at which gullies set in: more lets them begin on gentler slopes."},
   {"erosion.onset_octave", "", 0.01, 10, 1.25, false, "Steepness of a gully's side at which finer ones set in: more lets them begin nearer its crest."},
   {"erosion.ridge_onset_input", "", 0.01, 10, 2.8, false, "The same for the ridge map's input: more means thinner lines at peaks and valleys."},
