@@ -44,17 +44,15 @@ HWY_INLINE V mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-/// cos and sin of `cycles` full turns, |cycles| < 2^22; absolute error below 3e-6.
-/// Half-angle polynomials on [-1/4, 1/4] turn (Taylor, trimmed to the interval), then one doubling.
+/// cos and sin of `cycles` full turns, |cycles| < 2^22; absolute error below 1e-6.
+/// Half-angle polynomials on [-1/4, 1/4] turn (interpolated at Chebyshev nodes), then one doubling.
 template <class D, class V = VecOf<D>>
 HWY_INLINE void cos_sin_cycles(D d, V cycles, V& cosine, V& sine) {
   const V t = hn::Sub(cycles, hn::Round(cycles));  // [-1/2, 1/2]
   const V t2 = hn::Mul(t, t);
   // sin(pi t) and cos(pi t) on |t| <= 1/2.
-  const V s = hn::Mul(
-      t, polynomial(d, t2, 3.14159265f, -5.16771268f, 2.55016208f, -0.599264067f, 0.0821458866f, -0.00737043094f));
-  const V c =
-      polynomial(d, t2, 1.0f, -4.93480220f, 4.05871213f, -1.33526277f, 0.235330630f, -0.0258068913f, 0.00192957431f);
+  const V s = hn::Mul(t, polynomial(d, t2, 3.14159264f, -5.16771008f, 2.55007739f, -0.598290411f, 0.0776559123f));
+  const V c = polynomial(d, t2, 0.999999953f, -4.93479280f, 4.05841079f, -1.33187297f, 0.219682424f);
   const V s2 = hn::Add(s, s);
   sine = hn::Mul(s2, c);
   cosine = hn::Sub(hn::Set(d, 1.0f), hn::Mul(s2, s));
@@ -63,10 +61,9 @@ HWY_INLINE void cos_sin_cycles(D d, V cycles, V& cosine, V& sine) {
 /// e^x for x in [-4.5, 0]; relative error below 2e-6. Callers clamp.
 template <class D, class V = VecOf<D>>
 HWY_INLINE V exp_to_minus_4_5(D d, V x) {
-  // e^(x/8) around the middle of its interval (Taylor), then three squarings.
-  const V y = hn::Add(hn::Mul(x, hn::Set(d, 0.125f)), hn::Set(d, 0.28125f));  // [-0.28125, 0.28125]
-  V e = polynomial(d, y, 0.754839602f, 0.754839602f, 0.377419801f, 0.1258066f, 0.0314516501f, 0.00629033002f,
-                   0.00104838834f);
+  // e^(x/8), interpolated at Chebyshev nodes, then three squarings.
+  const V y = hn::Mul(x, hn::Set(d, 0.125f));  // [-0.5625, 0]
+  V e = polynomial(d, y, 0.999999983f, 0.999997831f, 0.499954745f, 0.166319168f, 0.0404470390f, 0.00630812253f);
   e = hn::Mul(e, e);
   e = hn::Mul(e, e);
   return hn::Mul(e, e);

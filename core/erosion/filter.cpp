@@ -32,7 +32,7 @@ struct ErosionRow {
   const std::array<Axis, kErosionOctavesMax>* x;
   const std::array<Axis, kErosionOctavesMax>* z;
   std::size_t k;  ///< row of the grid
-  std::size_t stride;
+  std::size_t width;
   const float *in_slope_x, *in_slope_z, *in_fade, *in_strength;
   float *height, *slope_x, *slope_z, *ridge;
 };
@@ -137,7 +137,7 @@ void erode_row(const ErosionTerms& t, const ErosionRow& r) {
     rows[o].fraction_z = z.fraction[r.k];
     for (std::size_t tap = 0; tap < 4; ++tap) rows[o].hash_z[tap] = z.cell_hash[tap][r.k];
   }
-  for (std::size_t i = 0; i < r.stride; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < r.width; i += hn::Lanes(d)) {
     auto s = before_octaves(d, t, hn::LoadU(d, r.in_slope_x + i), hn::LoadU(d, r.in_slope_z + i),
                             hn::LoadU(d, r.in_fade + i));
     const auto strength = hn::LoadU(d, r.in_strength + i);
@@ -225,8 +225,8 @@ void erode(const ErosionControls& c, const ColumnGrid& grid, const ErosionInput&
   const auto row = HWY_DYNAMIC_DISPATCH(erode_row);
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.depth); ++k) {
     const std::size_t at = k * stride;
-    row(terms, {&x, &z, k, stride, &in.slope_x[at], &in.slope_z[at], &in.fade_target[at], &in.strength[at],
-                &out.height_m[at], &out.slope_x[at], &out.slope_z[at], &out.ridge[at]});
+    row(terms, {&x, &z, k, static_cast<std::size_t>(grid.width), &in.slope_x[at], &in.slope_z[at], &in.fade_target[at],
+                &in.strength[at], &out.height_m[at], &out.slope_x[at], &out.slope_z[at], &out.ridge[at]});
   }
 }
 

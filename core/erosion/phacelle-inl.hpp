@@ -40,31 +40,35 @@ HWY_INLINE void phacelle(D d, const PhacelleRow& row, std::size_t i, V nx, V nz,
                          V& cosine, V& sine) {
   const hn::RebindToSigned<D> di;
   const hn::RebindToUnsigned<D> du;
+  // Distances are in units of 2^-16 cell, in which jitter is a whole number: no multiplication brings it to scale.
+  const V units = hn::Set(d, 0x1p16f);
+  const V units_to_cells = hn::Set(d, 0x1p-16f);
   // perp(n) = (-nz, nx); the angle in cycles is v . perp(n) * frequency + offset.
-  const V sx = hn::Neg(hn::Mul(nz, frequency));
-  const V sz = hn::Mul(nx, frequency);
-  const V fx = hn::LoadU(d, &row.x->fraction[i]);
-  const V fz = hn::Set(d, row.fraction_z);
+  const V per_unit = hn::Mul(frequency, units_to_cells);
+  const V sx = hn::Neg(hn::Mul(nz, per_unit));
+  const V sz = hn::Mul(nx, per_unit);
+  const V fx = hn::Mul(hn::LoadU(d, &row.x->fraction[i]), units);
+  const V fz = hn::Mul(hn::Set(d, row.fraction_z), units);
+  const V reach2 = hn::Set(d, kPhacelleReach2 * 0x1p32f);
   V sum_cos = hn::Zero(d);
   V sum_sin = hn::Zero(d);
   V sum_weight = hn::Zero(d);
   for (int k = 0; k < 4; ++k) {
     const auto hash_z = hn::Set(du, row.hash_z[static_cast<std::size_t>(k)]);
-    const V rz = hn::Sub(fz, hn::Set(d, static_cast<float>(k - 1)));
+    const V rz = hn::Sub(fz, hn::Set(d, static_cast<float>(k - 1) * 0x1p16f));
     for (int j = 0; j < 4; ++j) {
       auto h = hn::Xor(hn::LoadU(du, &row.x->cell_hash[static_cast<std::size_t>(j)][i]), hash_z);
       h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(du, 0x85EBCA6BU));
       h = hn::Mul(hn::Xor(h, hn::ShiftRight<13>(h)), hn::Set(du, 0xC2B2AE35U));
       const auto signed_hash = hn::BitCast(di, h);
-      const V to_half = hn::Set(d, 0x1p-16f);
-      const V jitter_x = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(signed_hash))), to_half);
-      const V jitter_z = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(signed_hash)), to_half);
-      const V vx = hn::Sub(hn::Sub(fx, hn::Set(d, static_cast<float>(j - 1))), jitter_x);
+      const V jitter_x = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(signed_hash)));
+      const V jitter_z = hn::ConvertTo(d, hn::ShiftRight<16>(signed_hash));
+      const V vx = hn::Sub(hn::Sub(fx, hn::Set(d, static_cast<float>(j - 1) * 0x1p16f)), jitter_x);
       const V vz = hn::Sub(rz, jitter_z);
       const V r2 = hn::Add(hn::Mul(vx, vx), hn::Mul(vz, vz));
       // Leaving a pivot out adds an exact zero, so whether its neighbours in the vector need it changes no bit.
-      if (hn::AllFalse(d, hn::Lt(r2, hn::Set(d, kPhacelleReach2)))) continue;
-      const V bell = exp_to_minus_4_5(d, hn::Mul(hn::Min(r2, hn::Set(d, kPhacelleReach2)), hn::Set(d, -2.0f)));
+      if (hn::AllFalse(d, hn::Lt(r2, reach2))) continue;
+      const V bell = exp_to_minus_4_5(d, hn::Mul(hn::Min(r2, reach2), hn::Set(d, -2.0f * 0x1p-32f)));
       const V weight = hn::Max(hn::Sub(bell, hn::Set(d, kPhacelleFloor)), hn::Zero(d));
       const V cycles = hn::Add(hn::Add(hn::Mul(vx, sx), hn::Mul(vz, sz)), offset);
       V c;

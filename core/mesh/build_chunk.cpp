@@ -9,29 +9,29 @@
 namespace talus {
 namespace {
 
-/// Densities of one chunk, addressed by sample, halo included (-1 .. cells + 1 along x and z).
+/// Densities of one chunk, addressed by sample, halo included (-1 .. cells + 1 along x and z, the sampled layers along
+/// y).
 class Samples {
  public:
-  Samples(const DensityBox& box, std::span<const float> density, int first_layer)
-      : box_(box), density_(density), first_layer_(first_layer) {}
+  Samples(const DensityBox& box, const float* density, int first_layer)
+      : row_(static_cast<std::ptrdiff_t>(box.stride)), layer_(static_cast<std::ptrdiff_t>(box.stride * box.depth)) {
+    origin_ = density - first_layer * layer_ + row_ + 1;
+  }
 
-  float at(int x, int y, int z) const { return density_[index(x, y, z)]; }
+  const float* row(int y, int z) const { return origin_ + y * layer_ + z * row_; }
+  float at(int x, int y, int z) const { return row(y, z)[x]; }
 
-  /// Gradient per cell by central differences. Layers beyond the box continue the nearest one: the halo is two layers
-  /// wide wherever there is a surface, so this is never read for a vertex.
+  /// Gradient in halves of a cell by central differences. Every sample next to a crossed edge has its neighbours
+  /// sampled.
   glm::vec3 gradient(int x, int y, int z) const {
-    return {at(x + 1, y, z) - at(x - 1, y, z), at(x, y + 1, z) - at(x, y - 1, z), at(x, y, z + 1) - at(x, y, z - 1)};
+    const float* p = row(y, z) + x;
+    return {p[1] - p[-1], p[layer_] - p[-layer_], p[row_] - p[-row_]};
   }
 
  private:
-  std::size_t index(int x, int y, int z) const {
-    const auto layer = static_cast<std::size_t>(std::clamp(y - first_layer_, 0, box_.layers - 1));
-    return (layer * box_.depth + static_cast<std::size_t>(z + 1)) * box_.stride + static_cast<std::size_t>(x + 1);
-  }
-
-  DensityBox box_;
-  std::span<const float> density_;
-  int first_layer_;
+  std::ptrdiff_t row_;
+  std::ptrdiff_t layer_;
+  const float* origin_;  ///< sample (0, 0, 0), which lies outside the array when its layer is not sampled
 };
 
 struct LayerInterval {
@@ -62,14 +62,15 @@ void read_signs(const Samples& samples, const LayerInterval& layers, SignRows& o
     for (int z = 0; z < count; ++z) {
       std::uint64_t row = below ? rock : 0;
       if (sampled) {
-        for (int x = 0; x < count; ++x) row |= static_cast<std::uint64_t>(samples.at(x, y, z) < 0.0f) << x;
+        const float* values = samples.row(y, z);
+        for (int x = 0; x < count; ++x) row |= static_cast<std::uint64_t>(values[x] < 0.0f) << x;
       }
       out.rows[static_cast<std::size_t>(y * count + z)] = row;
     }
   }
 }
 
-/// Makes the vertices of one chunk.
+/// Makes the vertices of one chunk, in the order of its crossed edges, in arrays that are long enough.
 class VertexMaker {
  public:
   VertexMaker(const WorldFunction& world, const ColumnBlock& columns, const Samples& samples, std::int64_t y_voxel,
@@ -79,7 +80,7 @@ class VertexMaker {
     y_m_ = static_cast<float>(static_cast<double>(y_voxel) * columns.grid.voxel_m);
   }
 
-  void operator()(const CrossedEdge& e) const {
+  void operator()(const CrossedEdge& e) {
     const std::array<int, 3> to{e.x + (e.axis == 0 ? 1 : 0), e.y + (e.axis == 1 ? 1 : 0), e.z + (e.axis == 2 ? 1 : 0)};
     const int step = crossing_step(samples_.at(e.x, e.y, e.z), samples_.at(to[0], to[1], to[2]));
     const float t = static_cast<float>(step) / static_cast<float>(kStepsPerCell);
@@ -98,10 +99,11 @@ class VertexMaker {
                                     columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
     const Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
 
-    out_.positions.push_back(position);
-    out_.normals.push_back(normal);
-    out_.materials.push_back(static_cast<std::uint8_t>(material));
-    out_.ridges.push_back(static_cast<std::uint8_t>(std::floor(std::clamp(ridge, -1.0f, 1.0f) * 127.5f + 128.0f)));
+    out_.positions[next_] = position;
+    out_.normals[next_] = normal;
+    out_.materials[next_] = static_cast<std::uint8_t>(material);
+    out_.ridges[next_] = static_cast<std::uint8_t>(std::clamp(ridge, -1.0f, 1.0f) * 127.0f + 128.0f);
+    ++next_;
   }
 
  private:
@@ -119,6 +121,7 @@ class VertexMaker {
   const ColumnBlock& columns_;
   const Samples& samples_;
   ChunkMesh& out_;
+  std::size_t next_ = 0;
   float step_m_ = 0;
   float y_m_ = 0;
 };
@@ -147,7 +150,7 @@ DensityBox sample_chunk(const WorldFunction& world, const ChunkKey& key, ChunkSc
   const std::int64_t first_voxel = y_voxel + layers.first * scratch.columns.grid.step_voxel;
   const DensityBox box = sample_density(scratch.columns, first_voxel, layers.count, scratch.density);
   scratch.signs.cells = world.cells();
-  read_signs(Samples(box, scratch.density, layers.first), layers, scratch.signs);
+  read_signs(Samples(box, scratch.density.data(), layers.first), layers, scratch.signs);
   return box;
 }
 
@@ -159,11 +162,11 @@ ChunkKind mesh_chunk(const WorldFunction& world, const ChunkKey& key, const Dens
   extract_triangles(scratch.signs, scratch.edges, out.indices);
   const std::int64_t y_voxel = corner_voxel(key, world.cells()).y;
   const auto first_layer = static_cast<int>((box.y_voxel - y_voxel) / scratch.columns.grid.step_voxel);
-  const Samples samples(box, scratch.density, first_layer);
-  out.positions.reserve(scratch.edges.vertices);
-  out.normals.reserve(scratch.edges.vertices);
-  out.materials.reserve(scratch.edges.vertices);
-  out.ridges.reserve(scratch.edges.vertices);
+  const Samples samples(box, scratch.density.data(), first_layer);
+  out.positions.resize(scratch.edges.vertices);
+  out.normals.resize(scratch.edges.vertices);
+  out.materials.resize(scratch.edges.vertices);
+  out.ridges.resize(scratch.edges.vertices);
   for_each_crossed_edge(scratch.signs, scratch.edges, VertexMaker(world, scratch.columns, samples, y_voxel, out));
   return ChunkKind::kMesh;
 }

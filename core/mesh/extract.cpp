@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 
 #include "core/base/check.hpp"
 #include "core/mesh/cell_table.hpp"
@@ -32,9 +31,21 @@ constexpr std::array<EdgePlace, 12> edge_places() {
 }
 constexpr auto kEdgePlaces = edge_places();
 
+/// x86-64 guarantees no POPCNT, and without it every count is a call: these functions exist twice and the loader picks
+/// one.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define TALUS_COUNTS_BITS [[gnu::target_clones("popcnt", "default")]]
+#else
+#define TALUS_COUNTS_BITS
+#endif
+
+/// Most vertex numbers one row of cells can ask for: 62 cells of 5 triangles.
+constexpr std::size_t kRowIndicesMax = 62 * 5 * 3;
+
 }  // namespace
 
-void find_crossed_edges(const SignRows& signs, CrossedEdges& out) {
+TALUS_COUNTS_BITS void find_crossed_edges(const SignRows& signs, CrossedEdges& out) {
   TALUS_CHECK(signs.cells >= 1 && signs.cells <= 62);
   const auto samples = static_cast<std::size_t>(signs.cells) + 1;
   const std::size_t count = samples * samples;
@@ -61,10 +72,12 @@ void find_crossed_edges(const SignRows& signs, CrossedEdges& out) {
   out.vertices = next;
 }
 
-void extract_triangles(const SignRows& signs, const CrossedEdges& edges, std::vector<std::uint32_t>& out) {
+TALUS_COUNTS_BITS void extract_triangles(const SignRows& signs, const CrossedEdges& edges,
+                                         std::vector<std::uint32_t>& out) {
   out.clear();
   const auto cells = static_cast<std::size_t>(signs.cells);
   const std::size_t samples = cells + 1;
+  std::array<std::uint32_t, kRowIndicesMax> found;
   const std::uint64_t all_cells = (std::uint64_t{1} << cells) - 1;
   for (std::size_t y = 0; y < cells; ++y) {
     for (std::size_t z = 0; z < cells; ++z) {
@@ -75,29 +88,30 @@ void extract_triangles(const SignRows& signs, const CrossedEdges& edges, std::ve
                                            signs.rows[rows[3]]};
       const std::uint64_t any = s[0] | s[1] | s[2] | s[3];
       const std::uint64_t all = s[0] & s[1] & s[2] & s[3];
+      std::size_t count = 0;
       for (std::uint64_t left = (any | any >> 1) & ~(all & all >> 1) & all_cells; left != 0; left &= left - 1) {
         const int x = std::countr_zero(left);
         const std::uint64_t pattern =
             (s[0] >> x & 3) | (s[1] >> x & 3) << 2 | (s[2] >> x & 3) << 4 | (s[3] >> x & 3) << 6;
         const CellTriangles& triangles = kCellTriangles[pattern];
         const std::size_t corners = std::size_t{3} * triangles.count;
-        const std::size_t at = out.size();
-        out.resize(at + corners);
         for (std::size_t i = 0; i < corners; ++i) {
           const EdgePlace place = kEdgePlaces[triangles.edges[i]];
           const std::size_t row = rows[place.row];
           const std::uint64_t before = (std::uint64_t{1} << (x + place.dx)) - 1;
-          out[at + i] = edges.first[place.axis][row] +
-                        static_cast<std::uint32_t>(std::popcount(edges.crossed[place.axis][row] & before));
+          found[count + i] = edges.first[place.axis][row] +
+                             static_cast<std::uint32_t>(std::popcount(edges.crossed[place.axis][row] & before));
         }
+        count += corners;
       }
+      out.insert(out.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
     }
   }
 }
 
 int crossing_step(float from, float to) {
   const float t = from / (from - to);
-  const auto step = static_cast<int>(std::floor(t * static_cast<float>(kStepsPerCell) + 0.5f));
+  const auto step = static_cast<int>(t * static_cast<float>(kStepsPerCell) + 0.5f);
   return std::clamp(step, 1, kStepsPerCell - 1);
 }
 

@@ -45,7 +45,7 @@ HWY_INLINE V corner_hash(V h) {
   return hn::Mul(h, hn::Set(du, 0xC2B2AE35U));
 }
 
-void add_octave(const OctaveRow& row, std::size_t stride, float* HWY_RESTRICT value, float* HWY_RESTRICT slope_x,
+void add_octave(const OctaveRow& row, std::size_t width, float* HWY_RESTRICT value, float* HWY_RESTRICT slope_x,
                 float* HWY_RESTRICT slope_z) {
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
@@ -72,7 +72,7 @@ void add_octave(const OctaveRow& row, std::size_t stride, float* HWY_RESTRICT va
   const V amplitude = hn::Set(d, row.amplitude);
   const V amplitude_slope = hn::Set(d, row.amplitude_per_cell);
 
-  for (std::size_t i = 0; i < stride; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     const V tx = hn::LoadU(d, &row.x->fraction[i]);
     const V tx1 = hn::Sub(tx, one);
     const V u = fade(tx);
@@ -152,7 +152,7 @@ void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<
                           {z.cell_hash[0][at], z.cell_hash[1][at]},
                           static_cast<float>(amplitude),
                           static_cast<float>(amplitude * cells_per_m)};
-      add(row, stride, &value[at * stride], &slope_x[at * stride], &slope_z[at * stride]);
+      add(row, static_cast<std::size_t>(grid.width), &value[at * stride], &slope_x[at * stride], &slope_z[at * stride]);
     }
     amplitude *= noise.gain;
     cells_per_m *= noise.lacunarity;

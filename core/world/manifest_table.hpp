@@ -30,7 +30,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
 
   {"erosion.scale_m", "m", 50, 10000, 1000, false, "Wavelength of the largest gullies: more means wider spurs and valleys."},
   {"erosion.octaves", "", 0, 10, 7, true, "Octaves of gullies: more means finer branches; 0 turns erosion off."},
-  {"erosion.strength", "", 0, 1, 0.19, false, "Depth of gullies as a share of their scale: more means deeper valleys and steeper flanks."},
+  {"erosion.strength", "", 0, 1, 0.175, false, "Depth of gullies as a share of their scale: more means deeper valleys and steeper flanks."},
   {"erosion.gain", "", 0.1, 0.9, 0.5, false, "Depth from one octave to the next: more means coarser fine branches."},
   {"erosion.lacunarity", "", 1.5, 3, 2, false, "Frequency from one octave to the next: more means a wider jump between branch sizes."},
   {"erosion.gully_weight", "", 0, 1, 0.5, false, "Share of gullies against pointed peaks: more means deeper gullies and rounder peaks."},
@@ -38,7 +38,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"erosion.rounding_ridge", "", 0, 1, 0.05, false, "Rounding of ridges: more means softer crests."},
   {"erosion.rounding_crease", "", 0, 1, 0.03, false, "Rounding of creases: more means valley floors filled with sediment."},
   {"erosion.rounding_input", "", 0, 10, 0.1, false, "Rounding of the peaks and valleys that were there before: more means softer ones."},
-  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next: more rounds finer gullies more, the lacunarity keeps one size at every octave."},
+  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next: the lacunarity keeps one size at every octave, less makes fine gullies sharper."},
   {"erosion.onset_input", "", 0.01, 10, 1.25, false, "Slope of the input at which gullies set in: more lets them begin on gentler slopes."},
   {"erosion.onset_octave", "", 0.01, 10, 1.25, false, "Steepness of a gully's side at which finer ones set in: more lets them begin nearer its crest."},
   {"erosion.ridge_onset_input", "", 0.01, 10, 2.8, false, "The same for the ridge map's input: more means thinner lines at peaks and valleys."},
@@ -55,8 +55,8 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
 
   {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
   {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},
-  {"micro.base_m", "m", 0, 5, 0.35, false, "Amplitude of roughness on plains: more means bumpier meadows."},
-  {"micro.hill_m", "m", 0, 10, 1.3, false, "Amplitude of roughness added where hilliness is 1: more means rougher rock."},
+  {"micro.base_m", "m", 0, 5, 0.4, false, "Amplitude of roughness on plains: more means bumpier meadows."},
+  {"micro.hill_m", "m", 0, 10, 2.4, false, "Amplitude of roughness added where hilliness is 1: more means rougher rock."},
 
   {"cover.snow_line_m", "m", -500, 5000, 1050, false, "Height above which snow lies on gentle ground: less means whiter mountains."},
   {"cover.grass_line_m", "m", -500, 5000, 850, false, "Height up to which grass grows: less means barer mountains."},

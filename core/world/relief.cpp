@@ -17,11 +17,11 @@ HWY_INLINE Jet<V> load(D d, const NoiseArrays& a, std::size_t i) {
   return {hn::LoadU(d, a.v + i), hn::LoadU(d, a.x + i), hn::LoadU(d, a.z + i)};
 }
 
-void relief_row_target(const MacroTerms& t, const ReliefRow& r, std::size_t stride) {
+void relief_row_target(const MacroTerms& t, const ReliefRow& r, std::size_t width) {
   const hn::ScalableTag<float> d;
   using V = hn::Vec<decltype(d)>;
   const auto constant = [&](float v) { return Jet<V>{hn::Set(d, v), hn::Zero(d), hn::Zero(d)}; };
-  for (std::size_t i = 0; i < stride; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     // Land and sea: the continent noise through a shelf, so that coasts are gentle inland and steep seaward.
     const Jet<V> c = load(d, r.continent, i) + t.land_bias;
     const Jet<V> shelf = smoothstep(-0.55f, 0.05f, c);
@@ -70,9 +70,9 @@ void relief_row_target(const MacroTerms& t, const ReliefRow& r, std::size_t stri
   }
 }
 
-void surface_row_target(const WorldFunction::Terms& t, const SurfaceRow& r, std::size_t stride) {
+void surface_row_target(const WorldFunction::Terms& t, const SurfaceRow& r, std::size_t width) {
   const hn::ScalableTag<float> d;
-  for (std::size_t i = 0; i < stride; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     const auto sum = [&](const float* a, const float* b, auto c) {
       return hn::Add(hn::Add(hn::LoadU(d, a + i), hn::LoadU(d, b + i)), c);
     };
@@ -99,12 +99,12 @@ namespace talus {
 HWY_EXPORT(relief_row_target);
 HWY_EXPORT(surface_row_target);
 
-void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t stride) {
-  HWY_DYNAMIC_DISPATCH(relief_row_target)(macro, row, stride);
+void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(relief_row_target)(macro, row, width);
 }
 
-void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t stride) {
-  HWY_DYNAMIC_DISPATCH(surface_row_target)(terms, row, stride);
+void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(surface_row_target)(terms, row, width);
 }
 
 }  // namespace talus

@@ -23,8 +23,9 @@ struct ReliefRow {
   float *height, *slope_x, *slope_z, *fade, *strength, *hilliness;  ///< out
 };
 
-/// Macro height (sea floor, shelf, plain, ranges), hills on top, fade target and erosion strength. `stride` columns.
-void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t stride);
+/// Macro height (sea floor, shelf, plain, ranges), hills on top, fade target and erosion strength. `width` columns,
+/// computed in whole vectors.
+void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t width);
 
 /// What lies on the eroded relief: roughness, and the clamp to the world's interval of heights.
 struct SurfaceRow {
@@ -33,6 +34,6 @@ struct SurfaceRow {
   const float *micro, *micro_x, *micro_z;               ///< roughness
   float *out_height, *out_slope_x, *out_slope_z, *out_steepness;
 };
-void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t stride);
+void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width);
 
 }  // namespace talus

@@ -70,6 +70,7 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
   const Terms& t = *terms_;
   const std::size_t stride = row_stride(grid);
   const std::size_t count = sample_count(grid);
+  const auto width = static_cast<std::size_t>(grid.width);
   out.grid = grid;
   out.stride = stride;
   resize_outputs(out, count);
@@ -91,7 +92,7 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
         t.macro,
         {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
          row_of(relief, at), height + at, slope_x + at, slope_z + at, fade + at, strength + at, &out.hilliness[at]},
-        stride);
+        width);
   }
 
   float* eroded = arrays.take();
@@ -106,13 +107,13 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
                 {height + at, slope_x + at, slope_z + at, &out.hilliness[at], eroded + at, eroded_x + at, eroded_z + at,
                  micro.v + at, micro.x + at, micro.z + at, &out.height_m[at], &out.slope_x[at], &out.slope_z[at],
                  &out.steepness[at]},
-                stride);
+                width);
   }
 
   out.height_low_m = t.high_m;
   out.height_high_m = t.low_m;
   for (std::size_t at = 0; at < count; at += stride) {
-    const auto row = std::span(out.height_m).subspan(at, static_cast<std::size_t>(grid.width));
+    const auto row = std::span(out.height_m).subspan(at, width);
     const auto [low, high] = std::ranges::minmax(row);
     out.height_low_m = std::min(out.height_low_m, low);
     out.height_high_m = std::max(out.height_high_m, high);
@@ -133,7 +134,7 @@ Material WorldFunction::cover(float height_m, float up, float ridge, float hilli
   if (height_m < -1.0f) return steep < t.rock_slope ? Material::kSand : Material::kRock;
   if (steep > t.rock_slope) return Material::kRock;
   if (height_m + 160.0f * dither - 220.0f * (slope - 0.4f) > t.snow_line_m) return Material::kSnow;
-  if (ridge < -0.72f && hilliness > 0.15f) return Material::kStreamBed;
+  if (ridge < -0.72f && hilliness > 0.15f && slope > 0.12f) return Material::kStreamBed;
   if (height_m + 120.0f * dither > t.grass_line_m) return steep > 0.45f ? Material::kScree : Material::kSoil;
   if (steep > 0.72f * t.rock_slope) return ridge > 0.1f ? Material::kSoil : Material::kScree;
   return Material::kGrass;

@@ -21,7 +21,9 @@ add_library(talus_compile INTERFACE)
 target_compile_options(talus_compile INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
   # One world on every processor: a multiply and an add never fuse behind our back.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nothing reads errno after a square root; without this each is a call.
+  -fno-math-errno)
 # SIMD targets of every kernel: the scalar fallback, SSE4, AVX2 and AVX-512, chosen at run time; SSSE3 is older than any host.
 target_compile_definitions(talus_compile INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
 target_include_directories(talus_compile INTERFACE "${PROJECT_SOURCE_DIR}")

@@ -8,24 +8,14 @@
 
 #include "tests/support/random.hpp"
 #include "tests/support/simd_targets.hpp"
+#include "tests/support/surface_key.hpp"
 
 namespace talus {
 namespace {
 
 constexpr std::uint64_t kSeed = 31;
 
-/// A chunk that the surface crosses, somewhere random.
-ChunkKey random_surface_key(const WorldFunction& world, testing::Random& random, int lod) {
-  const std::int64_t edge = std::int64_t{32} << lod;
-  const std::int64_t reach = (random.bits() & 1U) != 0 ? 40 : 1'000'000'000 / edge;
-  const auto x = static_cast<std::int32_t>(random.whole(-reach, reach));
-  const auto z = static_cast<std::int32_t>(random.whole(-reach, reach));
-  ColumnBlock block;
-  world.columns({x * edge + edge / 2, z * edge + edge / 2, 1, 1, 1, 1.0}, block);
-  const auto y =
-      static_cast<std::int32_t>(std::floor(static_cast<double>(block.height_m[0]) / static_cast<double>(edge)));
-  return {lod, x, y, z};
-}
+using testing::random_surface_key;
 
 bool same_mesh(const ChunkMesh& a, const ChunkMesh& b) {
   const auto bytes = [](const auto& x, const auto& y) {

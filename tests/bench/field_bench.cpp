@@ -1,0 +1,96 @@
+// Field kernels by the point, SIMD against plain scalar: `build/bench/bin/talus_bench --benchmark_filter=Field`.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/erosion/filter.hpp"
+#include "core/noise/gradient_noise.hpp"
+#include "core/world/world_function.hpp"
+#include "tests/support/simd_targets.hpp"
+#include "tests/unit/erosion/filter_reference.hpp"
+
+namespace talus::bench {
+namespace {
+
+constexpr ColumnGrid kTile{120'000, 340'000, 1, 64, 64, 1.0};
+constexpr double kPoints = 64.0 * 64.0;
+
+void count_points(benchmark::State& state, double points) {
+  state.counters["s/point"] =
+      benchmark::Counter(points, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+struct ErosionArrays {
+  std::vector<float> slope_x, slope_z, fade, strength, height, out_x, out_z, ridge;
+  ErosionArrays() {
+    for (auto* a : {&slope_x, &slope_z, &fade, &strength, &height, &out_x, &out_z, &ridge})
+      a->resize(sample_count(kTile));
+    for (std::size_t n = 0; n < slope_x.size(); ++n) {
+      const auto t = static_cast<float>(n);
+      slope_x[n] = 0.4f * std::sin(t * 0.01f);
+      slope_z[n] = 0.4f * std::cos(t * 0.003f);
+      fade[n] = std::sin(t * 0.002f);
+      strength[n] = 0.9f;
+    }
+  }
+};
+
+void FieldErosion(benchmark::State& state) {
+  ErosionArrays a;
+  ErosionControls controls;
+  controls.octaves = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    erode(controls, kTile, {a.slope_x, a.slope_z, a.fade, a.strength}, {a.height, a.out_x, a.out_z, a.ridge});
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
+/// One point at a time, double precision and libm: the in-tree reference.
+void FieldErosionScalar(benchmark::State& state) {
+  const ErosionArrays a;
+  ErosionControls controls;
+  controls.octaves = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    for (int k = 0; k < 64; k += 4) {
+      for (int i = 0; i < 64; ++i) {
+        const auto n = static_cast<std::size_t>(k * 64 + i);
+        benchmark::DoNotOptimize(testing::erode_reference(
+            controls, static_cast<double>(kTile.x_voxel + i), static_cast<double>(kTile.z_voxel + k),
+            static_cast<double>(a.slope_x[n]), static_cast<double>(a.slope_z[n]), static_cast<double>(a.fade[n]), 0.9));
+      }
+    }
+  }
+  count_points(state, kPoints / 4);
+}
+
+void FieldNoise(benchmark::State& state) {
+  std::vector<float> v(sample_count(kTile));
+  std::vector<float> x(v.size());
+  std::vector<float> z(v.size());
+  const FractalNoise noise{900, static_cast<int>(state.range(0)), 2.03, 0.5, 1};
+  for (auto _ : state) {
+    fractal_noise(noise, kTile, v, x, z);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
+void FieldColumnsTile(benchmark::State& state) {
+  const WorldFunction world{Manifest()};
+  ColumnBlock block;
+  for (auto _ : state) {
+    world.columns(kTile, block);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
+BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldErosionScalar)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldNoise)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldColumnsTile)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace talus::bench
