@@ -1,0 +1,118 @@
+#include "client_sample/cli/arguments.hpp"
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "client_sample/cli/commands.hpp"
+
+namespace talus::cli {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  talus info
+  talus get 5/0/1/0 -o chunk.glb
+  talus get 4/0/2/0 -o hills.obj --local --manifest worlds/alps.toml
+  talus fly --from 0,400,0 --to 2000,400,0 --speed 50 --seconds 60
+  talus fly --viewers 50 --seconds 300 --json
+  talus fly --until-complete --far 2000 --seconds 60     # time to a complete view
+  talus manifest check worlds/alps.toml
+
+Exit codes:
+  0 done   1 server, network or file failed   2 wrong command line   3 chunk without a surface
+  4 manifest with faults   5 fly: a viewer failed or its view was never complete)";
+
+void add_server(CLI::App& app, ServerOptions& server) {
+  app.add_option("--server", server.url, "URL of the server")->capture_default_str();
+  app.add_option("--world", server.world, "name of the world")
+      ->capture_default_str()
+      ->check([](const std::string& name) {
+        const bool is_name = !name.empty() && name.size() <= 32 &&
+                             name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+        return is_name ? std::string() : "\"" + name + "\" is no world: 1 to 32 characters of a-z, 0-9, _ and -";
+      });
+}
+
+struct Arguments {
+  GetOptions get;
+  InfoOptions info;
+  FlyOptions fly;
+  std::string checked;
+  std::string explained;
+  std::function<ExitCode()> command;
+};
+
+void add_get(CLI::App& app, Arguments& arguments) {
+  CLI::App* get = app.add_subcommand("get", "Write one chunk to a file: .drc .glb .obj or .ply");
+  get->add_option("chunk", arguments.get.key, "LOD/X/Y/Z, as 0/12/3/-7; LOD 0 is the finest")->required();
+  get->add_option("-o,--output", arguments.get.output, "file; its extension is the format")->required();
+  add_server(*get, arguments.get.server);
+  CLI::Option* local = get->add_flag("--local", arguments.get.is_local, "evaluate here, without a server");
+  get->add_option("--manifest", arguments.get.manifest, "with --local: TOML of the world; else the default world")
+      ->needs(local);
+  get->callback([&arguments] { arguments.command = [&arguments] { return cli::get(arguments.get); }; });
+}
+
+void add_info(CLI::App& app, Arguments& arguments) {
+  CLI::App* info = app.add_subcommand("info", "Say what a server's world is");
+  add_server(*info, arguments.info.server);
+  info->add_flag("--json", arguments.info.is_json, "the whole manifest as JSON");
+  info->callback([&arguments] { arguments.command = [&arguments] { return cli::info(arguments.info); }; });
+}
+
+void add_fly(CLI::App& app, Arguments& arguments) {
+  FlyOptions& options = arguments.fly;
+  CLI::App* fly = app.add_subcommand("fly", "Headless viewers that follow a path; says what arrived and when");
+  add_server(*fly, options.server);
+  fly->add_option("--from", options.from, "x,y,z in metres; else a standing place near the origin");
+  fly->add_option("--to", options.to, "x,y,z in metres; else the viewer stays");
+  fly->add_option("--speed", options.speed, "metres per second")->capture_default_str()->check(CLI::Range(0.0, 1000.0));
+  fly->add_option("--seconds", options.seconds, "how long at most")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 86400.0));
+  fly->add_option("--viewers", options.viewers, "viewers at once, 300 m apart, in this one process")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  fly->add_option("--near", options.near_m, "metres that LOD 0 reaches")->capture_default_str();
+  fly->add_option("--far", options.far_m, "metres that anything reaches")->capture_default_str();
+  fly->add_option("--lod-bias", options.lod_bias, "+1: every ring half as wide")->capture_default_str();
+  fly->add_option("--credit", options.credit_bytes, "bytes a viewer takes ahead")->capture_default_str();
+  fly->add_flag("--until-complete", options.until_complete, "end as soon as every viewer's view is complete");
+  fly->add_flag("--decode", options.decodes, "decode every mesh, as a real viewer does");
+  fly->add_flag("--json", options.is_json, "the summary as one line of JSON; progress goes to standard error");
+  fly->callback([&arguments] { arguments.command = [&arguments] { return cli::fly(arguments.fly); }; });
+}
+
+void add_manifest(CLI::App& app, Arguments& arguments) {
+  CLI::App* manifest = app.add_subcommand("manifest", "Check or explain the TOML file of a world");
+  manifest->require_subcommand(1);
+  CLI::App* check = manifest->add_subcommand("check", "Report every fault with its line, or the world's hash");
+  check->add_option("file", arguments.checked, "TOML file")->required();
+  check->callback([&arguments] { arguments.command = [&arguments] { return manifest_check(arguments.checked); }; });
+  CLI::App* explain = manifest->add_subcommand("explain", "Print every parameter with unit, limits and meaning");
+  explain->add_option("file", arguments.explained, "TOML file; else the default world");
+  explain->callback(
+      [&arguments] { arguments.command = [&arguments] { return manifest_explain(arguments.explained); }; });
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  CLI::App app("talus: chunks, facts and headless viewers of a talus world", "talus");
+  app.footer(kFooter);
+  app.set_version_flag("--version", TALUS_VERSION);
+  app.require_subcommand(1);
+  Arguments arguments;
+  add_get(app, arguments);
+  add_info(app, arguments);
+  add_fly(app, arguments);
+  add_manifest(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsage;
+  }
+  return arguments.command();
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,55 @@
+// What the program can do; each returns an exit code and has said on standard error why it is not kDone.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <glm/vec3.hpp>
+
+#include "client_sample/cli/exit_code.hpp"
+#include "core/grid/chunk_key.hpp"
+
+namespace talus::cli {
+
+struct ServerOptions {
+  std::string url = "http://127.0.0.1:8080";
+  std::string world = "default";
+};
+
+struct GetOptions {
+  ServerOptions server;
+  std::string key;        ///< LOD/X/Y/Z
+  std::string output;     ///< its extension is the format
+  bool is_local = false;  ///< evaluate in this process, without a server
+  std::string manifest;   ///< of a local world; empty: the default world
+};
+ExitCode get(const GetOptions& options);
+
+struct InfoOptions {
+  ServerOptions server;
+  bool is_json = false;
+};
+ExitCode info(const InfoOptions& options);
+
+struct FlyOptions {
+  ServerOptions server;
+  std::string from;     ///< x,y,z; empty: a standing place near the origin
+  std::string to;       ///< x,y,z; empty: stays
+  double speed = 20.0;  ///< metres per second
+  double seconds = 10.0;
+  int viewers = 1;
+  double near_m = 128.0;
+  double far_m = 2000.0;
+  double lod_bias = 0.0;
+  std::uint64_t credit_bytes = 4ULL * 1024 * 1024;
+  bool until_complete = false;  ///< ends as soon as every viewer's view is complete
+  bool decodes = false;         ///< decodes every mesh, as a real viewer does
+  bool is_json = false;
+};
+ExitCode fly(const FlyOptions& options);
+
+ExitCode manifest_check(const std::string& file);
+/// Prints a manifest with every parameter, its unit, limits and meaning; the default world's without a file.
+ExitCode manifest_explain(const std::string& file);
+
+}  // namespace talus::cli

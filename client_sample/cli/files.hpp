@@ -1,0 +1,19 @@
+// Whole files in and out. Says on standard error what failed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/world/manifest.hpp"
+
+namespace talus::cli {
+
+std::optional<std::string> load_file(const std::string& path, std::size_t bytes_max);
+/// "-" is standard output.
+bool store_file(const std::string& path, std::string_view bytes);
+
+/// Every fault is printed. An empty path is the default world.
+std::optional<Manifest> load_manifest(const std::string& path);
+
+}  // namespace talus::cli

@@ -1,0 +1,129 @@
+// talus get: one chunk, from a server or evaluated here, into a file.
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "client_sample/cli/commands.hpp"
+#include "client_sample/cli/files.hpp"
+#include "client_sample/cli/mesh_file.hpp"
+#include "client_sample/cli/text.hpp"
+#include "client_sample/library/http_get.hpp"
+#include "client_sample/library/world_info.hpp"
+#include "core/mesh/build_chunk.hpp"
+#include "protocol/mesh_codec.hpp"
+
+namespace talus::cli {
+namespace {
+
+using client::HttpAnswer;
+
+std::string_view extension_of(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string_view::npos ? std::string_view{} : path.substr(dot);
+}
+
+std::string_view text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+ExitCode no_surface(const ChunkKey& key, std::string_view kind) {
+  fmt::print(stderr, "talus: chunk {} is all {}: there is no surface to write\n", format_chunk_key(key), kind);
+  return kNoSurface;
+}
+
+ExitCode store(const GetOptions& options, std::string_view bytes) {
+  if (!store_file(options.output, bytes)) return kFailed;
+  if (options.output != "-") fmt::print(stderr, "{}: {} bytes\n", options.output, bytes.size());
+  return kDone;
+}
+
+/// Writes what is known as a mesh already.
+ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkMesh& mesh, int cells, double voxel_m) {
+  const protocol::MeshLattice lattice = protocol::mesh_lattice(key, cells, voxel_m);
+  const glm::dvec3 corner = box_of(key, cells, voxel_m).low;
+  const std::string_view extension = extension_of(options.output);
+  if (extension == ".obj") return store(options, encode_obj(mesh, lattice, corner));
+  if (extension == ".ply") return store(options, encode_ply(mesh, lattice, corner));
+  const auto bytes =
+      extension == ".glb" ? protocol::encode_glb(mesh, lattice, corner) : protocol::encode_draco(mesh, lattice);
+  if (bytes) return store(options, text_of(*bytes));
+  fmt::print(stderr, "talus: {}\n", protocol::describe(bytes.error()));
+  return kFailed;
+}
+
+ExitCode get_local(const GetOptions& options, const ChunkKey& key) {
+  const auto manifest = load_manifest(options.manifest);
+  if (!manifest) return kBadManifest;
+  const WorldFunction world(*manifest);
+  ChunkScratch scratch;
+  ChunkMesh mesh;
+  const ChunkKind kind = build_chunk(world, key, scratch, mesh);
+  if (kind != ChunkKind::kMesh) return no_surface(key, kind == ChunkKind::kAir ? "air" : "rock");
+  return store_mesh(options, key, mesh, world.cells(), world.voxel_m());
+}
+
+/// An answer of 200 or 204; everything else has been said.
+std::optional<HttpAnswer> fetch(const client::ServerAddress& server, const std::string& target) {
+  auto answer = client::http_get(server, target);
+  if (!answer) {
+    fmt::print(stderr, "talus: {}\n", answer.error().message);
+    return std::nullopt;
+  }
+  if (answer->status == 200 || answer->status == 204) return std::move(*answer);
+  fmt::print(stderr, "talus: {} answered {}: {}\n", target, answer->status, client::error_text(answer->body));
+  return std::nullopt;
+}
+
+ExitCode get_remote(const GetOptions& options, const ChunkKey& key) {
+  const auto server = client::parse_server_url(options.server.url);
+  if (!server) {
+    fmt::print(stderr, "talus: {}\n", server.error().message);
+    return kUsage;
+  }
+  const std::string world = "/v1/worlds/" + options.server.world;
+  const std::string_view extension = extension_of(options.output);
+  std::string target = world + "/chunks/" + format_chunk_key(key) + (extension == ".glb" ? ".glb" : ".drc");
+  const auto answer = fetch(*server, target);
+  if (!answer) return kFailed;
+  if (answer->status == 204) {
+    const auto kind = answer->fields.find("talus-chunk");
+    return no_surface(key, kind == answer->fields.end() ? "air or rock" : kind->second);
+  }
+  if (extension == ".drc" || extension == ".glb") return store(options, answer->body);
+
+  const auto manifest = fetch(*server, world);
+  if (!manifest) return kFailed;
+  const auto info = client::parse_world_info(manifest->body);
+  if (!info) {
+    fmt::print(stderr, "talus: {} is not the manifest of a world\n", world);
+    return kFailed;
+  }
+  const int cells = info->shape.cells;
+  const double voxel_m = info->shape.voxel_m;
+  const auto mesh =
+      protocol::decode_draco(std::as_bytes(std::span(answer->body)), protocol::mesh_lattice(key, cells, voxel_m));
+  if (mesh) return store_mesh(options, key, *mesh, cells, voxel_m);
+  fmt::print(stderr, "talus: {}: {}\n", target, protocol::describe(mesh.error()));
+  return kFailed;
+}
+
+}  // namespace
+
+ExitCode get(const GetOptions& options) {
+  const auto key = parse_chunk_key(options.key);
+  if (!key) {
+    fmt::print(
+        stderr,
+        "talus: \"{}\" is not a chunk: give LOD/X/Y/Z with LOD 0..{} and coordinates within +-{}, as 0/12/3/-7\n",
+        options.key, kLodMax, kChunkLimit);
+    return kUsage;
+  }
+  const std::string_view extension = extension_of(options.output);
+  if (extension != ".drc" && extension != ".glb" && extension != ".obj" && extension != ".ply") {
+    fmt::print(stderr, "talus: \"{}\" has to end in .drc, .glb, .obj or .ply: that is the format\n", options.output);
+    return kUsage;
+  }
+  return options.is_local ? get_local(options, *key) : get_remote(options, *key);
+}
+
+}  // namespace talus::cli

@@ -1,0 +1,5 @@
+#include "client_sample/cli/arguments.hpp"
+
+int main(int argc, char** argv) {
+  return talus::cli::run(argc, argv);
+}

@@ -1,0 +1,233 @@
+#include "client_sample/library/connection.hpp"
+
+#include <array>
+#include <deque>
+#include <random>
+#include <utility>
+
+#include <asio/connect.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/write.hpp>
+
+#include "client_sample/library/handshake.hpp"
+#include "client_sample/library/websocket_frames.hpp"
+#include "protocol/limits.hpp"
+
+namespace talus::client {
+
+using asio::ip::tcp;
+using Bytes = std::vector<std::byte>;
+
+Loop::Loop() : context_(std::make_unique<asio::io_context>(1)) {}
+Loop::~Loop() = default;
+
+void Loop::poll() {
+  context_->restart();
+  context_->poll();
+}
+
+void Loop::run_for(std::chrono::milliseconds time) {
+  context_->restart();
+  context_->run_for(time);
+}
+
+/// Every pending operation holds a reference; `is_over_` makes the late ones do nothing.
+class Connection::State : public std::enable_shared_from_this<State> {
+ public:
+  State(asio::io_context& context, ServerAddress server, std::string target, Handlers handlers)
+      : resolver_(context),
+        socket_(context),
+        deadline_(context),
+        server_(std::move(server)),
+        target_(std::move(target)),
+        handlers_(std::move(handlers)),
+        random_(std::random_device{}()),
+        reader_(protocol::kOutboundMessageBytesMax) {}
+
+  void open() {
+    expire_in(kOpenTimeout);
+    resolver_.async_resolve(
+        server_.host, std::to_string(server_.port),
+        [self = shared_from_this()](const asio::error_code& error, tcp::resolver::results_type found) {
+          if (self->is_over_) return;
+          if (error) return self->end({ErrorCode::kResolve, "no address for " + self->server_.host});
+          self->connect(std::move(found));
+        });
+  }
+
+  void send(Opcode opcode, std::span<const std::byte> payload) {
+    if (!is_open_ || is_over_) return;
+    outbox_.push_back(masked_frame(opcode, payload, static_cast<std::uint32_t>(random_())));
+    if (outbox_.size() == 1) write();
+  }
+
+  void close() {
+    if (is_over_) return;
+    if (!is_open_) return end({ErrorCode::kConnect, "closed before the connection was open"});
+    is_closing_ = true;
+    const std::array<std::byte, 2> normal{std::byte{0x03}, std::byte{0xE8}};  // 1000
+    send(Opcode::kClose, normal);
+    expire_in(std::chrono::seconds(2));
+  }
+
+  /// The last step: every way the connection can end comes by here once.
+  void end(ClientError error) {
+    if (is_over_) return;
+    const Handlers handlers = std::move(handlers_);
+    abandon();
+    if (handlers.on_closed) handlers.on_closed(error);
+  }
+
+  void abandon() {
+    is_over_ = true;
+    handlers_ = {};
+    resolver_.cancel();
+    deadline_.cancel();
+    asio::error_code ignored;
+    socket_.close(ignored);
+  }
+
+ private:
+  void connect(tcp::resolver::results_type found) {
+    asio::async_connect(
+        socket_, found, [self = shared_from_this()](const asio::error_code& error, const tcp::endpoint&) {
+          if (self->is_over_) return;
+          if (error) {
+            return self->end(
+                {ErrorCode::kConnect, "no connection to " + self->server_.authority() + " (" + error.message() + ")"});
+          }
+          asio::error_code ignored;
+          self->socket_.set_option(tcp::no_delay(true), ignored);
+          self->shake_hands();
+        });
+  }
+
+  void shake_hands() {
+    key_ = handshake_key(random_(), random_());
+    request_ = handshake_request(server_, target_, key_);
+    asio::async_write(socket_, asio::buffer(request_),
+                      [self = shared_from_this()](const asio::error_code& error, std::size_t) {
+                        if (self->is_over_) return;
+                        if (error) return self->end({ErrorCode::kConnect, "the connection broke: " + error.message()});
+                        self->read();
+                      });
+  }
+
+  void read() {
+    socket_.async_read_some(asio::buffer(input_),
+                            [self = shared_from_this()](const asio::error_code& error, std::size_t size) {
+                              if (self->is_over_) return;
+                              if (error) return self->end(self->broken(error));
+                              const std::span<const std::byte> bytes = std::span(self->input_).first(size);
+                              self->is_open_ ? self->take(bytes) : self->take_handshake(bytes);
+                              if (!self->is_over_) self->read();
+                            });
+  }
+
+  ClientError broken(const asio::error_code& error) const {
+    if (is_closing_) return {ErrorCode::kBye, "closed as asked"};
+    return {ErrorCode::kConnect, "the connection broke: " + error.message()};
+  }
+
+  void take_handshake(std::span<const std::byte> bytes) {
+    answer_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t end_of_head = answer_.find("\r\n\r\n");
+    if (end_of_head == std::string::npos) {
+      if (answer_.size() > kHandshakeBytesMax) end({ErrorCode::kHandshake, "the server's answer does not end"});
+      return;
+    }
+    if (const auto error = handshake_fault(answer_, key_)) return end(*error);
+    is_open_ = true;
+    expire_in(kSilenceMax);
+    const Bytes rest = [&] {
+      const auto view = std::as_bytes(std::span(answer_)).subspan(end_of_head + 4);
+      return Bytes(view.begin(), view.end());
+    }();
+    answer_.clear();
+    if (handlers_.on_open) handlers_.on_open();
+    if (!is_over_ && !rest.empty()) take(rest);
+  }
+
+  void take(std::span<const std::byte> bytes) {
+    if (!is_closing_) expire_in(kSilenceMax);
+    reader_.feed(bytes);
+    while (!is_over_) {
+      const auto event = reader_.next();
+      if (!event) return;
+      switch (event->kind) {
+        case FrameReader::Event::Kind::kMessage:
+          if (handlers_.on_message) handlers_.on_message(event->bytes);
+          break;
+        case FrameReader::Event::Kind::kPing:
+          send(Opcode::kPong, event->bytes);
+          break;
+        case FrameReader::Event::Kind::kPong:
+          break;
+        case FrameReader::Event::Kind::kClose:
+          return end({ErrorCode::kBye,
+                      is_closing_ ? "closed as asked"
+                                  : "the server closed the connection, code " + std::to_string(event->close_code)});
+        case FrameReader::Event::Kind::kFault:
+          return end({ErrorCode::kProtocol, "the server broke the WebSocket protocol: " + std::string(event->fault)});
+      }
+    }
+  }
+
+  void write() {
+    asio::async_write(socket_, asio::buffer(outbox_.front()),
+                      [self = shared_from_this()](const asio::error_code& error, std::size_t) {
+                        if (self->is_over_) return;
+                        if (error) return self->end(self->broken(error));
+                        self->outbox_.pop_front();
+                        if (!self->outbox_.empty()) self->write();
+                      });
+  }
+
+  void expire_in(std::chrono::seconds time) {
+    deadline_.expires_after(time);
+    deadline_.async_wait([self = shared_from_this()](const asio::error_code& error) {
+      if (error || self->is_over_) return;
+      if (self->is_closing_) return self->end({ErrorCode::kBye, "closed as asked"});
+      self->end({ErrorCode::kTimeout, self->server_.authority() + " does not answer"});
+    });
+  }
+
+  tcp::resolver resolver_;
+  tcp::socket socket_;
+  asio::steady_timer deadline_;
+  const ServerAddress server_;
+  const std::string target_;
+  Handlers handlers_;
+  std::mt19937_64
+      random_;  ///< masks keep proxies from reading our bytes as theirs; nobody has to be kept from guessing
+  std::string key_;
+  std::string request_;
+  std::string answer_;
+  FrameReader reader_;
+  std::array<std::byte, 64 * 1024> input_{};
+  std::deque<Bytes> outbox_;
+  bool is_open_ = false;
+  bool is_closing_ = false;
+  bool is_over_ = false;
+};
+
+Connection::Connection(Loop& loop, const ServerAddress& server, std::string target, Handlers handlers)
+    : state_(std::make_shared<State>(loop.context(), server, std::move(target), std::move(handlers))) {
+  state_->open();
+}
+
+Connection::~Connection() {
+  state_->abandon();
+}
+
+void Connection::send(std::vector<std::byte> message) {
+  state_->send(Opcode::kBinary, message);
+}
+
+void Connection::close() {
+  state_->close();
+}
+
+}  // namespace talus::client

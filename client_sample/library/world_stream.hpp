@@ -1,0 +1,71 @@
+// A viewer of one world: says what it sees and is handed the chunks of its interest area.
+//
+//   Loop loop;
+//   WorldStream stream(loop, options, handlers);   // connects in the background
+//   each frame: stream.look(view); loop.poll();    // handlers run inside poll(), on this thread
+//
+// Chunks come nearest first and are the engine's from then on; on_leave says which it may forget. Credit is given back
+// as soon as on_chunk returns, so an engine that falls behind is sent less: decode inside it, or hold the bytes and
+// set `gives_credit_itself`. After a lost connection make a new stream and pass what is still held as `held`: those
+// chunks are not sent again. No handler may destroy its stream. Owner: the thread of the loop.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client_sample/library/connection.hpp"
+#include "client_sample/library/world_info.hpp"
+#include "protocol/message.hpp"
+
+namespace talus::client {
+
+struct StreamOptions {
+  ServerAddress server;
+  std::string world = "default";
+  std::string token;
+  std::string client = "talus library";             ///< named in the server's log
+  std::uint64_t credit_bytes = 4ULL * 1024 * 1024;  ///< bytes under way at most: more hides latency, less lag
+  bool gives_credit_itself = false;                 ///< credit returns only through give_credit
+  std::vector<protocol::HeldChunk> held;            ///< sent right behind the hello
+};
+
+struct StreamHandlers {
+  std::function<void(const WorldInfo&)> on_welcome;
+  std::function<void(const protocol::ViewAccepted&)> on_view;
+  /// `payload` is Draco (protocol/mesh_codec.hpp) for kind mesh, else empty; it lives during the call.
+  std::function<void(const protocol::ChunkHead&, std::span<const std::byte> payload)> on_chunk;
+  std::function<void(const std::vector<ChunkKey>&)> on_leave;
+  std::function<void(const protocol::Idle&)> on_idle;
+  std::function<void(const ClientError&)> on_closed;  ///< once, and nothing after it
+};
+
+class WorldStream {
+ public:
+  WorldStream(Loop& loop, StreamOptions options, StreamHandlers handlers);
+  ~WorldStream();
+  WorldStream(const WorldStream&) = delete;
+  WorldStream& operator=(const WorldStream&) = delete;
+
+  /// The latest wins; returns its number, which ViewAccepted and Idle echo. Before the welcome it waits.
+  std::uint32_t look(const protocol::View& view);
+  /// Explicit keys, nearest first, instead of an interest area; the latest wins.
+  void want(std::vector<protocol::HeldChunk> chunks);
+  /// Bytes that can be taken again; only with gives_credit_itself.
+  void give_credit(std::uint64_t bytes);
+  /// Says bye.
+  void close();
+
+  /// Nothing before the welcome.
+  const std::optional<WorldInfo>& info() const;
+
+ private:
+  class Viewer;
+  std::unique_ptr<Viewer> viewer_;
+};
+
+}  // namespace talus::client
