@@ -1,0 +1,29 @@
+// Chunks arrive in lattice steps; the model matrix scales them to metres and places them relative to the camera, so
+// that no large number ever reaches the GPU.
+precision highp float;
+precision highp int;
+in vec4 position;  // xyz: steps; w: material
+in vec4 normal;    // xyz: unit normal; w: ridge map, -1 .. 1
+uniform mat4 modelMatrix;
+uniform mat4 viewMatrix;
+uniform mat4 projectionMatrix;
+uniform vec3 uCameraPlace;  // xz: camera modulo the texture period; y: height above the sea
+out vec3 vRelative;
+out vec3 vPlace;
+out vec3 vNormal;
+out float vRidge;
+out vec4 vCoverA;  // rock, scree, soil, grass
+out vec3 vCoverB;  // sand, snow, stream bed
+
+void main() {
+  vec4 relative = modelMatrix * vec4(position.xyz, 1.0);
+  vRelative = relative.xyz;
+  vPlace = relative.xyz + uCameraPlace;
+  vNormal = normal.xyz;
+  vRidge = normal.w;
+  float material = position.w;
+  vCoverA = vec4(equal(vec4(material), vec4(0.0, 1.0, 2.0, 3.0)));
+  vCoverB = vec3(equal(vec3(material), vec3(4.0, 5.0, 6.0)));
+  if (material > 6.5) vCoverA.x = 1.0;
+  gl_Position = projectionMatrix * (viewMatrix * relative);
+}
