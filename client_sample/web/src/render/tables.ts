@@ -35,7 +35,7 @@ function renderOnce(renderer: THREE.WebGLRenderer, target: THREE.WebGLRenderTarg
   const scene = new THREE.Scene();
   scene.add(fullScreenMesh(material));
   renderer.setRenderTarget(target);
-  renderer.render(scene, new THREE.Camera());
+  renderer.render(scene, new THREE.OrthographicCamera());
   renderer.setRenderTarget(null);
   material.dispose();
 }

@@ -98,6 +98,13 @@ export class ViewRenderer {
     this.counts.triangles = renderer.info.render.triangles;
   }
 
+  /// Direction of the ray through a point of the screen, both 0..1 from the lower left; of the last frame.
+  rayThrough(right: number, up: number): THREE.Vector3 {
+    const { uTanHalf, uCameraAxes } = this.shared;
+    const ray = new THREE.Vector3((2 * right - 1) * uTanHalf.value.x, (2 * up - 1) * uTanHalf.value.y, -1);
+    return ray.applyMatrix3(uCameraAxes.value).normalize();
+  }
+
   private aim(pose: CameraPose, now_ms: number): void {
     const { camera, shared } = this;
     camera.rotation.set(pose.pitch, pose.yaw, 0);

@@ -115,7 +115,6 @@ export class ChunkStore<Mesh> {
   /// Decides what is drawn. Once a frame; does nothing if nothing has changed.
   resolve(): void {
     if (!this.changed) return;
-    this.changed = false;
     this.markMissing();
     for (const node of [...this.drawnNodes]) {
       if (!node.wanted && !this.mustStay(node)) this.undraw(node);
@@ -126,6 +125,7 @@ export class ChunkStore<Mesh> {
     for (const node of [...this.heldNodes]) {
       if (node.left && !node.wanted && !node.drawn) this.drop(node);
     }
+    this.changed = false;
   }
 
   counts(): StoreCounts {

@@ -14,10 +14,7 @@ export type DecodeAnswer = { id: number; mesh: PackedMesh } | { id: number; faul
 
 const draco: Promise<DracoModule> = fetch(wasmUrl)
   .then((response) => response.arrayBuffer())
-  .then((wasmBinary) => createDraco({ wasmBinary }))
-  // The module is a thenable of itself: an async function that returned it would wait for ever.
-  .then((module) => ({ module }))
-  .then(({ module }) => Object.assign(module, { then: undefined }) as DracoModule);
+  .then((wasmBinary) => createDraco({ wasmBinary }));
 
 async function answer(job: DecodeJob): Promise<DecodeAnswer> {
   try {

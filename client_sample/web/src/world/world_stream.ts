@@ -1,0 +1,168 @@
+// The world as it comes: asks for views, decodes what arrives, keeps what is held and says when a view is complete.
+// Owner: the main thread.
+
+import { type ChunkKey, type Vec3, type WorldShape, edgeOf } from '../protocol/chunk_key';
+import { Connection, type Arrival, type ConnectionState, type ViewRequest } from '../protocol/connection';
+import { interestArea } from '../protocol/interest_area';
+import { kViewLodMax } from '../protocol/limits';
+import { ChunkKind, type HeldChunk } from '../protocol/message';
+import type { WorldManifest } from '../protocol/server_info';
+import { ChunkStore, type DrawTarget } from './chunk_store';
+import { DecodePool } from './decode_pool';
+import { type PackedMesh, kStepsPerCell } from './packed_mesh';
+import { type PlacedSurface, type SurfacePoint, surfaceAlong, surfaceBelow } from './surface_index';
+
+/// While moving, a new view this often.
+const kViewEvery_ms = 140;
+/// Less than this is not worth a message, metres and (for the direction) 1 - cosine.
+const kViewMoved_m = 1.5;
+const kViewTurned = 0.02;
+
+export interface StreamEvents<Mesh> extends DrawTarget<Mesh> {
+  create(key: ChunkKey, shape: WorldShape, packed: PackedMesh): Mesh;
+  state(state: ConnectionState): void;
+  fault(why: string): void;
+}
+
+export class WorldStream<Mesh extends PlacedSurface> {
+  readonly store: ChunkStore<Mesh>;
+  readonly connection: Connection;
+  lastLatency_ms = 0;
+  faults = 0;
+  private readonly pool: DecodePool;
+  private readonly shape: WorldShape;
+  private worldHash = '';
+  private lastSent: ViewRequest | null = null;
+  private lastSent_ms = -Infinity;
+  private idleFor = 0; // sequence of the view that the server has sent everything of
+  private newSession = false;
+
+  constructor(
+    url: string,
+    manifest: WorldManifest,
+    private readonly events: StreamEvents<Mesh>,
+  ) {
+    this.shape = manifest.shape;
+    this.store = new ChunkStore<Mesh>(events);
+    this.pool = new DecodePool((why) => this.fault(why));
+    this.connection = new Connection(url, manifest.name, {
+      state: (state) => events.state(state),
+      welcome: (worldHash) => this.welcome(worldHash),
+      accepted: (sequence, view) => this.accepted(sequence, view),
+      arrival: (arrival) => this.arrival(arrival),
+      leave: (keys) => this.store.leave(keys),
+      idle: (sequence) => {
+        this.idleFor = sequence;
+      },
+      held: () => this.heldChunks(),
+    });
+    this.connection.open();
+  }
+
+  /// Once a frame: tells the server where the viewer is if that has changed enough, and swaps what is ready.
+  update(view: ViewRequest, now_ms: number): void {
+    if (now_ms - this.lastSent_ms >= kViewEvery_ms && this.hasMoved(view)) {
+      this.lastSent = view;
+      this.lastSent_ms = now_ms;
+      this.connection.sendView(view);
+    }
+    this.store.resolve();
+  }
+
+  /// Everything that the latest view wants has arrived and is drawn.
+  get complete(): boolean {
+    return this.idleFor !== 0 && this.idleFor === this.connection.viewSequence && this.store.complete;
+  }
+
+  /// The highest drawn ground at (x, z) not above `ceilingM`, the finest first.
+  groundBelow(x: number, z: number, ceilingM: number): SurfacePoint | null {
+    let best: SurfacePoint | null = null;
+    for (let lod = 0; lod <= kViewLodMax; ++lod) {
+      const edge = edgeOf(this.shape, lod);
+      const top = Math.floor(Math.min(ceilingM, this.shape.heightHighM) / edge);
+      const floor = Math.floor(Math.max(this.shape.heightLowM, best?.heightM ?? -Infinity) / edge);
+      for (let y = top; y >= floor; --y) {
+        const node = this.store.find({ lod, x: Math.floor(x / edge), y, z: Math.floor(z / edge) });
+        const mesh = node?.drawn ? node.held?.mesh : null;
+        const found = mesh ? surfaceBelow(mesh, x, z, ceilingM) : null;
+        if (found === null) continue;
+        if (best === null || found.heightM > best.heightM) best = found;
+        break;
+      }
+    }
+    return best;
+  }
+
+  /// Distance along a ray to what is drawn; null for nothing. For tests and for pointing, not for every frame.
+  pick(from: Vec3, towards: Vec3): { distanceM: number; name: string } | null {
+    let best: { distanceM: number; name: string } | null = null;
+    for (const node of this.store.drawn()) {
+      const mesh = node.held?.mesh;
+      if (!mesh) continue;
+      const distanceM = surfaceAlong(mesh, [from.x, from.y, from.z], [towards.x, towards.y, towards.z]);
+      if (distanceM < (best?.distanceM ?? Infinity)) best = { distanceM, name: node.name };
+    }
+    return best;
+  }
+
+  private hasMoved(view: ViewRequest): boolean {
+    const last = this.lastSent;
+    if (last === null) return true;
+    const moved = Math.hypot(
+      view.position.x - last.position.x,
+      view.position.y - last.position.y,
+      view.position.z - last.position.z,
+    );
+    const a = view.direction;
+    const b = last.direction;
+    const turned = 1 - (a.x * b.x + a.y * b.y + a.z * b.z);
+    return moved > kViewMoved_m || turned > kViewTurned || view.farM !== last.farM || view.nearM !== last.nearM;
+  }
+
+  private welcome(worldHash: string): void {
+    // A server with another world under the same name: nothing of what is held belongs to it.
+    if (this.worldHash !== '' && this.worldHash !== worldHash) this.store.clear();
+    this.worldHash = worldHash;
+    this.newSession = true;
+    this.idleFor = 0;
+  }
+
+  private heldChunks(): HeldChunk[] {
+    return [...this.store.held()].map((node) => ({ key: node.key, revision: node.held!.revision }));
+  }
+
+  private accepted(sequence: number, view: Parameters<typeof interestArea>[0]): void {
+    if (sequence > this.connection.viewSequence) return;
+    this.store.want(interestArea(view, this.shape), performance.now());
+    if (this.newSession) this.store.leaveUnwanted();
+    this.newSession = false;
+  }
+
+  private arrival(arrival: Arrival): void {
+    const { key, revision, kind, payload, bytes } = arrival;
+    const session = this.connection.session;
+    const node = this.store.arrived(key, revision);
+    if (kind !== ChunkKind.Mesh) {
+      this.store.ready(node, revision, null);
+      this.connection.consumed(bytes, session);
+      return;
+    }
+    const edgeSteps = this.shape.cells * kStepsPerCell;
+    const stepM = edgeOf(this.shape, key.lod) / edgeSteps;
+    this.pool.decode(payload, { stepM, edgeSteps }, (packed, why) => {
+      this.connection.consumed(bytes, session);
+      if (packed === null) {
+        this.fault(`chunk ${node.name} cannot be decoded: ${why}`);
+        this.store.failed(node, revision);
+        return;
+      }
+      this.store.ready(node, revision, this.events.create(key, this.shape, packed));
+      if (node.wantedAt_ms > 0) this.lastLatency_ms = performance.now() - node.wantedAt_ms;
+    });
+  }
+
+  private fault(why: string): void {
+    this.faults += 1;
+    this.events.fault(why);
+  }
+}
