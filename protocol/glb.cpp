@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/check.hpp"
-#include "core/world/material.hpp"
+#include "core/strata/material.hpp"
 #include "protocol/coloured_draco.hpp"
 #include "protocol/mesh_codec.hpp"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid/chunk_key.hpp"
-#include "core/world/material.hpp"
+#include "core/strata/material.hpp"
 #include "core/world/world_function.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/manifest_toml.hpp"

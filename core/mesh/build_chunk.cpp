@@ -97,8 +97,13 @@ class VertexMaker {
     const float height_m = y_m_ + (static_cast<float>(position.y) / static_cast<float>(kStepsPerCell)) * step_m_;
     const glm::i64vec2 column_voxel{columns_.grid.x_voxel + (e.x + 1) * columns_.grid.step_voxel,
                                     columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
-    const Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
+    Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
 
+    if (material == Material::kRock) {
+      const float stack_m =
+          columns_.stack_m[from_column] + (columns_.stack_m[to_column] - columns_.stack_m[from_column]) * t;
+      material = world_.rock(stack_m, columns_.choice[from_column], height_m, column_voxel);
+    }
     out_.positions[next_] = position;
     out_.normals[next_] = normal;
     out_.materials[next_] = static_cast<std::uint8_t>(material);

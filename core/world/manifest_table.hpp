@@ -53,6 +53,17 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"erosion.plain_strength", "", 0, 1, 0.06, false, "Erosion where hilliness is 0: more engraves plains."},
   {"erosion.hill_strength", "", 0, 2, 0.85, false, "Erosion added where hilliness is 1: more means rougher ranges."},
 
+  {"strata.sets", "", 2, 64, 12, true, "Layer sets of the world: more means more kinds of country before one comes again."},
+  {"strata.set_m", "m", 500, 100000, 9000, false, "Wavelength at which layer sets change: more means wider countries of one rock."},
+  {"strata.deformation_m", "m", 0, 400, 120, false, "How far folds lift and lower the layers: more bends them more."},
+  {"strata.fold_m", "m", 200, 20000, 3500, false, "Wavelength of the largest folds: less means tighter ones."},
+  {"strata.tilt_m", "m", 0, 400, 240, false, "How far whole regions of layers tilt: more means steeper dips."},
+  {"strata.tilt_wavelength_m", "m", 2000, 100000, 14000, false, "Wavelength of the tilt: less means steeper dips."},
+  {"strata.ledge", "", 0, 2.4, 1.6, false, "How far hard layers stand proud: more means higher steps and wider benches, 0 none."},
+  {"strata.ledge_slope", "", 0.01, 2, 0.25, false, "Slope of the relief from which ledges show: less terraces gentle hills too."},
+  {"strata.district_m", "m", 500, 50000, 5200, false, "Wavelength of districts with and without ledges: more means wider ones."},
+  {"strata.resistance", "", 0, 1, 0.4, false, "How much hard rock withstands erosion: more means shallower gullies in it."},
+
   {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
   {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},
   {"micro.base_m", "m", 0, 5, 0.4, false, "Amplitude of roughness on plains: more means bumpier meadows."},

@@ -1,5 +1,17 @@
 #include "core/world/relief.hpp"
 
+#ifndef TALUS_RELIEF_CONSTANTS
+#define TALUS_RELIEF_CONSTANTS
+namespace talus {
+
+/// Height of the top of every stack before it is bent, in metres: above any summit.
+inline constexpr float kStackTop = 3600.0f;
+/// Hardness that leaves erosion as strong as the manifest says.
+inline constexpr float kMeanHardness = 0.55f;
+
+}  // namespace talus
+#endif  // TALUS_RELIEF_CONSTANTS
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/world/relief.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -70,24 +82,56 @@ void relief_row_target(const MacroTerms& t, const ReliefRow& r, std::size_t widt
   }
 }
 
+void strata_place_row_target(const WorldFunction::Terms& t, const StrataPlace& r, std::size_t width) {
+  const hn::ScalableTag<float> d;
+  const auto last = hn::Set(d, static_cast<float>(t.strata->sets() - 1));
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
+    const auto scaled = [&](const float* noise, float by) { return hn::Mul(hn::LoadU(d, noise + i), hn::Set(d, by)); };
+    const auto bent = hn::Add(scaled(r.fold, t.fold_m), scaled(r.tilt, t.tilt_m));
+    hn::StoreU(hn::Add(bent, hn::Set(d, kStackTop)), d, r.stack + i);
+    const auto share = saturate(hn::Add(scaled(r.set_choice, 0.9f), hn::Set(d, 0.5f)));
+    hn::StoreU(hn::Mul(share, last), d, r.choice + i);
+  }
+}
+
+void resist_row_target(float resistance, const float* hardness, float* strength, std::size_t width) {
+  const hn::ScalableTag<float> d;
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
+    const auto softer = hn::Sub(hn::Set(d, kMeanHardness), hn::LoadU(d, hardness + i));
+    const auto factor = hn::Add(hn::Set(d, 1.0f), hn::Mul(softer, hn::Set(d, resistance)));
+    hn::StoreU(hn::Mul(hn::LoadU(d, strength + i), factor), d, strength + i);
+  }
+}
+
+void add_change_row_target(const ChangeRow& r, std::size_t width) {
+  const hn::ScalableTag<float> d;
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
+    const auto add = [&](const float* change, float* to) {
+      hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::LoadU(d, change + i)), d, to + i);
+    };
+    add(r.height_change, r.height);
+    add(r.x_change, r.slope_x);
+    add(r.z_change, r.slope_z);
+  }
+}
+
 void surface_row_target(const WorldFunction::Terms& t, const SurfaceRow& r, std::size_t width) {
   const hn::ScalableTag<float> d;
   for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
-    const auto sum = [&](const float* a, const float* b, auto c) {
-      return hn::Add(hn::Add(hn::LoadU(d, a + i), hn::LoadU(d, b + i)), c);
-    };
     const auto amplitude =
         hn::Add(hn::Set(d, t.micro_base_m), hn::Mul(hn::LoadU(d, r.hilliness + i), hn::Set(d, t.micro_high_m)));
-    const auto rough = [&](const float* a) { return hn::Mul(hn::LoadU(d, a + i), amplitude); };
-    const auto height = sum(r.height, r.eroded, rough(r.micro));
-    hn::StoreU(hn::Min(hn::Max(height, hn::Set(d, t.low_m)), hn::Set(d, t.high_m)), d, r.out_height + i);
-    const auto slope_x = sum(r.slope_x, r.eroded_x, rough(r.micro_x));
-    const auto slope_z = sum(r.slope_z, r.eroded_z, rough(r.micro_z));
-    hn::StoreU(slope_x, d, r.out_slope_x + i);
-    hn::StoreU(slope_z, d, r.out_slope_z + i);
+    const auto rough = [&](const float* smooth, const float* micro) {
+      return hn::Add(hn::LoadU(d, smooth + i), hn::Mul(hn::LoadU(d, micro + i), amplitude));
+    };
+    const auto height = rough(r.height, r.micro);
+    const auto slope_x = rough(r.slope_x, r.micro_x);
+    const auto slope_z = rough(r.slope_z, r.micro_z);
+    hn::StoreU(hn::Min(hn::Max(height, hn::Set(d, t.low_m)), hn::Set(d, t.high_m)), d, r.height + i);
+    hn::StoreU(slope_x, d, r.slope_x + i);
+    hn::StoreU(slope_z, d, r.slope_z + i);
     const auto one = hn::Set(d, 1.0f);
     const auto square = hn::Add(hn::Mul(slope_x, slope_x), hn::Mul(slope_z, slope_z));
-    hn::StoreU(hn::Div(one, hn::Sqrt(hn::Add(one, square))), d, r.out_steepness + i);
+    hn::StoreU(hn::Div(one, hn::Sqrt(hn::Add(one, square))), d, r.steepness + i);
   }
 }
 
@@ -97,10 +141,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace talus {
 HWY_EXPORT(relief_row_target);
+HWY_EXPORT(strata_place_row_target);
+HWY_EXPORT(resist_row_target);
+HWY_EXPORT(add_change_row_target);
 HWY_EXPORT(surface_row_target);
 
 void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t width) {
   HWY_DYNAMIC_DISPATCH(relief_row_target)(macro, row, width);
+}
+
+void strata_place_row(const WorldFunction::Terms& terms, const StrataPlace& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(strata_place_row_target)(terms, row, width);
+}
+
+void resist_row(float resistance, const float* hardness, float* strength, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(resist_row_target)(resistance, hardness, strength, width);
+}
+
+void add_change_row(const ChangeRow& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(add_change_row_target)(row, width);
 }
 
 void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width) {

@@ -27,12 +27,27 @@ struct ReliefRow {
 /// computed in whole vectors.
 void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t width);
 
-/// What lies on the eroded relief: roughness, and the clamp to the world's interval of heights.
+/// Where the rock layers lie: the height of their stack's top and which set of them rules.
+struct StrataPlace {
+  const float *fold, *tilt, *set_choice;  ///< noises
+  float *stack, *choice;                  ///< out
+};
+void strata_place_row(const WorldFunction::Terms& terms, const StrataPlace& row, std::size_t width);
+
+/// strength *= 1 + (mean hardness - hardness) * resistance, so that hard rock is worn less.
+void resist_row(float resistance, const float* hardness, float* strength, std::size_t width);
+
+/// height and slope += change, in place.
+struct ChangeRow {
+  const float *height_change, *x_change, *z_change;
+  float *height, *slope_x, *slope_z;
+};
+void add_change_row(const ChangeRow& row, std::size_t width);
+
+/// Roughness on top, the clamp to the world's interval of heights, and the slope's steepness; in place.
 struct SurfaceRow {
-  const float *height, *slope_x, *slope_z, *hilliness;  ///< relief
-  const float *eroded, *eroded_x, *eroded_z;            ///< change by erosion
-  const float *micro, *micro_x, *micro_z;               ///< roughness
-  float *out_height, *out_slope_x, *out_slope_z, *out_steepness;
+  const float *hilliness, *micro, *micro_x, *micro_z;
+  float *height, *slope_x, *slope_z, *steepness;
 };
 void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width);
 

@@ -71,6 +71,15 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.relief = {m.number("relief.wavelength_m"), m.whole("relief.octaves"), m.number("relief.lacunarity"),
               m.number("relief.gain"), m.seed(6)};
   t.erosion = erosion_of(m);
+  t.strata = std::make_unique<const Strata>(
+      StrataControls{m.whole("strata.sets"), m.real("strata.ledge"), m.real("strata.ledge_slope"), m.seed(9)});
+  t.fold = {m.number("strata.fold_m"), 3, 2.2, 0.4, m.seed(10)};
+  t.fold_m = m.real("strata.deformation_m");
+  t.tilt = {m.number("strata.tilt_wavelength_m"), 1, 2.0, 0.5, m.seed(11)};
+  t.tilt_m = m.real("strata.tilt_m");
+  t.set_choice = {m.number("strata.set_m"), 2, 2.3, 0.35, m.seed(12)};
+  t.district = {m.number("strata.district_m"), 1, 2.0, 0.5, m.seed(13)};
+  t.resistance = m.real("strata.resistance");
   const int micro_octaves = m.whole("micro.octaves");
   t.micro = {m.number("micro.wavelength_m"), micro_octaves > 0 ? micro_octaves : 1, 2.0, 0.5, m.seed(8)};
   t.micro_base_m = micro_octaves > 0 ? m.real("micro.base_m") : 0.0f;

@@ -1,8 +1,11 @@
 // The manifest as the kernels want it: floats and noises instead of names. Private to core/world.
 #pragma once
 
+#include <memory>
+
 #include "core/erosion/filter.hpp"
 #include "core/noise/gradient_noise.hpp"
+#include "core/strata/strata.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
@@ -19,8 +22,10 @@ struct WorldFunction::Terms {
   int cells = 32;
   double voxel_m = 1;
   MacroTerms macro{};
-  FractalNoise continent, range, massif, crest, swell, relief, micro;
+  FractalNoise continent, range, massif, crest, swell, relief, micro, fold, tilt, set_choice, district;
   ErosionControls erosion;
+  std::unique_ptr<const Strata> strata;
+  float fold_m = 0, tilt_m = 0, resistance = 0;
   float micro_base_m = 0, micro_high_m = 0;
   float low_m = 0, high_m = 0;  ///< heights of surfaces never leave this
   float snow_line_m = 0, grass_line_m = 0, beach_m = 0, rock_slope = 0;

@@ -38,12 +38,13 @@ NoiseArrays row_of(const NoiseArrays& a, std::size_t at) {
 }
 
 void resize_outputs(ColumnBlock& out, std::size_t count) {
-  for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness})
+  for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness,
+                      &out.stack_m, &out.choice})
     array->resize(count);
 }
 
-/// 7 noises of 3 arrays, relief's 5 and erosion's 3.
-constexpr std::size_t kWorkspaceArrays = 7 * 3 + 5 + 3;
+/// 11 noises of 3 arrays, relief's 5, hardness, and erosion's 3.
+constexpr std::size_t kWorkspaceArrays = 11 * 3 + 5 + 1 + 3;
 
 }  // namespace
 
@@ -82,32 +83,49 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
   const NoiseArrays crest = sample(t.crest, grid, arrays);
   const NoiseArrays swell = sample(t.swell, grid, arrays);
   const NoiseArrays relief = sample(t.relief, grid, arrays);
-  float* height = arrays.take();
-  float* slope_x = arrays.take();
-  float* slope_z = arrays.take();
+  float* relief_x = arrays.take();
+  float* relief_z = arrays.take();
   float* fade = arrays.take();
   float* strength = arrays.take();
   for (std::size_t at = 0; at < count; at += stride) {
-    relief_row(
-        t.macro,
-        {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
-         row_of(relief, at), height + at, slope_x + at, slope_z + at, fade + at, strength + at, &out.hilliness[at]},
-        width);
+    relief_row(t.macro,
+               {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
+                row_of(relief, at), &out.height_m[at], relief_x + at, relief_z + at, fade + at, strength + at,
+                &out.hilliness[at]},
+               width);
+  }
+
+  const NoiseArrays fold = sample(t.fold, grid, arrays);
+  const NoiseArrays tilt = sample(t.tilt, grid, arrays);
+  const NoiseArrays set_choice = sample(t.set_choice, grid, arrays);
+  const NoiseArrays district = sample(t.district, grid, arrays);
+  float* hardness = arrays.take();
+  for (std::size_t at = 0; at < count; at += stride) {
+    strata_place_row(t, {fold.v + at, tilt.v + at, set_choice.v + at, &out.stack_m[at], &out.choice[at]}, width);
+    t.strata->hardness_row({&out.stack_m[at], &out.choice[at], district.v + at, width}, &out.height_m[at],
+                           hardness + at);
+    resist_row(t.resistance, hardness + at, strength + at, width);
   }
 
   float* eroded = arrays.take();
   float* eroded_x = arrays.take();
   float* eroded_z = arrays.take();
-  erode(t.erosion, grid, {arrays.span(slope_x), arrays.span(slope_z), arrays.span(fade), arrays.span(strength)},
+  erode(t.erosion, grid, {arrays.span(relief_x), arrays.span(relief_z), arrays.span(fade), arrays.span(strength)},
         {arrays.span(eroded), arrays.span(eroded_x), arrays.span(eroded_z), out.ridge});
 
   const NoiseArrays micro = sample(t.micro, grid, arrays);
   for (std::size_t at = 0; at < count; at += stride) {
-    surface_row(t,
-                {height + at, slope_x + at, slope_z + at, &out.hilliness[at], eroded + at, eroded_x + at, eroded_z + at,
-                 micro.v + at, micro.x + at, micro.z + at, &out.height_m[at], &out.slope_x[at], &out.slope_z[at],
-                 &out.steepness[at]},
-                width);
+    float* height = &out.height_m[at];
+    float* slope_x = &out.slope_x[at];
+    float* slope_z = &out.slope_z[at];
+    std::copy_n(relief_x + at, stride, slope_x);
+    std::copy_n(relief_z + at, stride, slope_z);
+    add_change_row({eroded + at, eroded_x + at, eroded_z + at, height, slope_x, slope_z}, width);
+    t.strata->ledge_row({&out.stack_m[at], &out.choice[at], district.v + at, width}, relief_x + at, relief_z + at,
+                        height, slope_x, slope_z);
+    surface_row(
+        t, {&out.hilliness[at], micro.v + at, micro.x + at, micro.z + at, height, slope_x, slope_z, &out.steepness[at]},
+        width);
   }
 
   out.height_low_m = t.high_m;
@@ -138,6 +156,11 @@ Material WorldFunction::cover(float height_m, float up, float ridge, float hilli
   if (height_m + 120.0f * dither > t.grass_line_m) return steep > 0.45f ? Material::kScree : Material::kSoil;
   if (steep > 0.72f * t.rock_slope) return ridge > 0.1f ? Material::kSoil : Material::kScree;
   return Material::kGrass;
+}
+
+Material WorldFunction::rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
+  const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
+  return terms_->strata->rock_at(stack_m, choice, height_m, place_m);
 }
 
 }  // namespace talus

@@ -17,8 +17,8 @@
 
 #include "core/grid/chunk_key.hpp"
 #include "core/grid/column_grid.hpp"
+#include "core/strata/material.hpp"
 #include "core/world/manifest.hpp"
-#include "core/world/material.hpp"
 
 namespace talus {
 
@@ -33,6 +33,8 @@ struct ColumnBlock {
   std::vector<float> steepness;  ///< 1 / sqrt(1 + slope^2): turns a vertical distance to the surface into a distance
   std::vector<float> ridge;      ///< ridge map, -1 (crease) .. +1 (ridge)
   std::vector<float> hilliness;  ///< 0 (plain) .. 1 (range)
+  std::vector<float> stack_m;    ///< height of the top of the rock layers
+  std::vector<float> choice;     ///< layer set, with the fraction over which the next one takes over
   float height_low_m = 0;        ///< over the whole block
   float height_high_m = 0;
   std::vector<float> workspace;  ///< the kernels' intermediate arrays
@@ -57,6 +59,8 @@ class WorldFunction {
 
   /// What covers the ground at a column whose surface has the unit normal's y component `up`.
   Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;
+  /// The rock of the layer at `height_m` in a column of this stack and choice.
+  Material rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
 
   struct Terms;  ///< the manifest as the kernels want it (core/world/terms.hpp)
 

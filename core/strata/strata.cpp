@@ -1,0 +1,182 @@
+#include "core/strata/strata.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.hpp"
+#include "core/base/hash.hpp"
+
+#ifndef TALUS_STRATA_TABLES
+#define TALUS_STRATA_TABLES
+namespace talus {
+
+/// Half-metre slices of kStackDepth, and one more for the interpolation at its end.
+inline constexpr float kSlicesPerMetre = 2.0f;
+inline constexpr int kSlicesPerSet = static_cast<int>(kStackDepth * kSlicesPerMetre) + 2;
+
+/// What the kernels read.
+struct StrataTables {
+  const float* ledge;
+  const float* hardness;
+  float ledge_scale, ledge_slope;
+};
+
+}  // namespace talus
+#endif  // TALUS_STRATA_TABLES
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/strata/strata.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+// Highway needs its own header after foreach_target.
+#include <hwy/highway.h>
+
+#include "core/base/jet-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A table's value and slope per metre of depth, blended between the two sets that meet at each lane.
+template <class D, class V = VecOf<D>>
+HWY_INLINE void look_up(D d, const float* table, V depth, V choice, V& value, V& slope) {
+  const hn::RebindToSigned<D> di;
+  const V slices = hn::Mul(hn::Min(hn::Max(depth, hn::Zero(d)), hn::Set(d, kStackDepth)), hn::Set(d, kSlicesPerMetre));
+  const V whole = hn::Floor(slices);
+  const V f = hn::Sub(slices, whole);
+  const V set = hn::Floor(choice);
+  const V t = saturate(hn::Mul(hn::Sub(hn::Sub(choice, set), hn::Set(d, 0.35f)), hn::Set(d, 1.0f / 0.3f)));
+  const V blend = hn::Mul(hn::Mul(t, t), hn::Sub(hn::Set(d, 3.0f), hn::Add(t, t)));
+  const auto at = hn::Add(hn::Mul(hn::ConvertTo(di, set), hn::Set(di, kSlicesPerSet)), hn::ConvertTo(di, whole));
+  const auto step = [&](int offset, V& low, V& rise) {
+    const auto here = hn::Add(at, hn::Set(di, offset));
+    low = hn::GatherIndex(d, table, here);
+    rise = hn::Sub(hn::GatherIndex(d, table + 1, here), low);
+  };
+  V low_a, rise_a, low_b, rise_b;
+  step(0, low_a, rise_a);
+  step(kSlicesPerSet, low_b, rise_b);
+  const V rise = mix(rise_a, rise_b, blend);
+  value = hn::Add(mix(low_a, low_b, blend), hn::Mul(f, rise));
+  slope = hn::Mul(rise, hn::Set(d, kSlicesPerMetre));
+}
+
+void hardness_row_target(const StrataTables& tables, const StrataRow& r, const float* height, float* hardness) {
+  const hn::ScalableTag<float> d;
+  for (std::size_t i = 0; i < r.width; i += hn::Lanes(d)) {
+    const auto depth = hn::Sub(hn::LoadU(d, r.stack_m + i), hn::LoadU(d, height + i));
+    hn::Vec<decltype(d)> value;
+    hn::Vec<decltype(d)> slope;
+    look_up(d, tables.hardness, depth, hn::LoadU(d, r.choice + i), value, slope);
+    hn::StoreU(value, d, hardness + i);
+  }
+}
+
+void ledge_row_target(const StrataTables& tables, const StrataRow& r, const float* relief_x, const float* relief_z,
+                      float* height, float* slope_x, float* slope_z) {
+  const hn::ScalableTag<float> d;
+  using V = hn::Vec<decltype(d)>;
+  const auto rising = [&](V v, float low, float high) {
+    return smoothstep(low, high, Jet<V>{v, hn::Zero(d), hn::Zero(d)}).v;
+  };
+  for (std::size_t i = 0; i < r.width; i += hn::Lanes(d)) {
+    const V h = hn::LoadU(d, height + i);
+    const V gx = hn::LoadU(d, relief_x + i);
+    const V gz = hn::LoadU(d, relief_z + i);
+    const V steep = hn::Sqrt(hn::Add(hn::Mul(gx, gx), hn::Mul(gz, gz)));
+    V ledge;
+    V ledge_slope;
+    look_up(d, tables.ledge, hn::Sub(hn::LoadU(d, r.stack_m + i), h), hn::LoadU(d, r.choice + i), ledge, ledge_slope);
+    const V shown = hn::Mul(hn::Mul(rising(steep, 0.4f * tables.ledge_slope, 1.6f * tables.ledge_slope),
+                                    rising(hn::LoadU(d, r.district + i), -0.25f, 0.2f)),
+                            hn::Mul(rising(h, 5.0f, 60.0f), hn::Set(d, tables.ledge_scale)));
+    // Depth falls as height rises: d height' / d height = 1 + shown * d ledge / d depth.
+    const V factor = hn::Add(hn::Set(d, 1.0f), hn::Mul(shown, ledge_slope));
+    hn::StoreU(hn::Sub(h, hn::Mul(shown, ledge)), d, height + i);
+    hn::StoreU(hn::Mul(hn::LoadU(d, slope_x + i), factor), d, slope_x + i);
+    hn::StoreU(hn::Mul(hn::LoadU(d, slope_z + i), factor), d, slope_z + i);
+  }
+}
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace talus {
+HWY_EXPORT(hardness_row_target);
+HWY_EXPORT(ledge_row_target);
+
+namespace {
+
+/// A neutral rock: harder ones stand proud, softer ones recede.
+constexpr float kNeutralHardness = 0.53f;
+/// Ledges forget the layers above after this depth, in metres: a thick hard formation lifts its rim, not a continent.
+constexpr float kLeak_m = 160.0f;
+constexpr float kWindow_m = 45.0f;
+
+/// Edge of the patches in which a layer keeps one of its rocks, in metres.
+constexpr double kPatch_m = 140.0;
+
+}  // namespace
+
+Strata::Strata(const StrataControls& controls) : controls_(controls) {
+  TALUS_CHECK(controls.sets >= 2 && controls.ledge < 2.6f);
+  for (int n = 0; n < controls.sets; ++n) {
+    sets_.emplace_back(mix64(controls.seed, static_cast<std::uint64_t>(n)));
+    tabulate(sets_.back());
+  }
+  // A choice of exactly sets - 1 looks one set further with weight 0: let it read something.
+  ledge_.resize(ledge_.size() + static_cast<std::size_t>(kSlicesPerSet) + 1);
+  hardness_.resize(ledge_.size());
+}
+
+void Strata::tabulate(const LayerSet& set) {
+  std::vector<double> sum{0.0};
+  double ledge = 0;
+  const double step = 1.0 / static_cast<double>(kSlicesPerMetre);
+  for (int slice = 0; slice < kSlicesPerSet; ++slice) {
+    ledge_.push_back(static_cast<float>(ledge));
+    const float depth = (static_cast<float>(slice) + 0.5f) / kSlicesPerMetre;
+    const auto hardness = static_cast<double>(set.layer(set.index_at(depth)).hardness);
+    ledge += (hardness - static_cast<double>(kNeutralHardness) - ledge / static_cast<double>(kLeak_m)) * step;
+    sum.push_back(sum.back() + hardness);
+  }
+  const int window = static_cast<int>(kWindow_m * kSlicesPerMetre);
+  for (int slice = 0; slice < kSlicesPerSet; ++slice) {
+    const int low = std::max(slice - window, 0);
+    const int high = std::min(slice + window, kSlicesPerSet);
+    const double mean = (sum[static_cast<std::size_t>(high)] - sum[static_cast<std::size_t>(low)]) / (high - low);
+    hardness_.push_back(static_cast<float>(mean));
+  }
+}
+
+void Strata::hardness_row(const StrataRow& row, const float* height_m, float* hardness) const {
+  HWY_DYNAMIC_DISPATCH(hardness_row_target)
+  ({ledge_.data(), hardness_.data(), controls_.ledge, controls_.ledge_slope}, row, height_m, hardness);
+}
+
+void Strata::ledge_row(const StrataRow& row, const float* relief_x, const float* relief_z, float* height_m,
+                       float* slope_x, float* slope_z) const {
+  HWY_DYNAMIC_DISPATCH(ledge_row_target)
+  ({ledge_.data(), hardness_.data(), controls_.ledge, controls_.ledge_slope}, row, relief_x, relief_z, height_m,
+   slope_x, slope_z);
+}
+
+Material Strata::rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
+  // Patches have crooked borders because the deformation shifts their lattice.
+  const double shift = static_cast<double>(stack_m) * 2.0;
+  const auto cell = [&](double at) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at / kPatch_m)));
+  };
+  const std::uint64_t patch = mix64(mix64(controls_.seed, cell(place_m.x + shift)), cell(place_m.y - shift));
+  const auto unit = [](std::uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; };
+  const int last = sets() - 1;
+  const int low = std::clamp(static_cast<int>(choice), 0, last);
+  const float fraction = choice - static_cast<float>(low);
+  const int chosen = 0.35f + 0.3f * unit(mix64(patch, 1)) < fraction ? std::min(low + 1, last) : low;
+  const LayerSet& rocks = set(chosen);
+  const int index = rocks.index_at(stack_m - height_m);
+  return rocks.rock_at(index, unit(mix64(patch, static_cast<std::uint64_t>(index) + 2)));
+}
+
+}  // namespace talus
+#endif  // HWY_ONCE

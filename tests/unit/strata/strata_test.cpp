@@ -1,0 +1,131 @@
+#include "core/strata/strata.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "tests/support/random.hpp"
+#include "tests/support/simd_targets.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::size_t kWidth = 96;
+
+/// One row of columns of one stack, at heights that rise along it.
+struct Row {
+  std::vector<float> stack, choice, district, relief_x, relief_z, height, slope_x, slope_z, hardness;
+  Row(float stack_m, float set_choice, float low_m, float step_m) {
+    for (auto* a : {&stack, &choice, &district, &relief_x, &relief_z, &height, &slope_x, &slope_z, &hardness})
+      a->resize(kWidth);
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      stack[i] = stack_m;
+      choice[i] = set_choice;
+      district[i] = 0.6f;
+      relief_x[i] = 0.9f;
+      height[i] = low_m + step_m * static_cast<float>(i);
+      slope_x[i] = 1.0f;
+    }
+  }
+  StrataRow place() const { return {stack.data(), choice.data(), district.data(), kWidth}; }
+  void ledge(const Strata& strata) {
+    strata.ledge_row(place(), relief_x.data(), relief_z.data(), height.data(), slope_x.data(), slope_z.data());
+  }
+};
+
+Strata strata_of(float ledge) {
+  StrataControls controls;
+  controls.ledge = ledge;
+  controls.seed = 4;
+  return Strata(controls);
+}
+
+TEST(Strata, MeansHardnessOverTheRockAroundADepth) {
+  const Strata strata = strata_of(1.6f);
+  Row row(3600, 3.0f, 100, 21.3f);
+  strata.hardness_row(row.place(), row.height.data(), row.hardness.data());
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const float depth = row.stack[i] - row.height[i];
+    double sum = 0;
+    int samples = 0;
+    for (float d = depth - 45; d < depth + 45; d += 0.05f, ++samples) {
+      sum += static_cast<double>(strata.set(3).layer(strata.set(3).index_at(d)).hardness);
+    }
+    EXPECT_NEAR(static_cast<double>(row.hardness[i]), sum / samples, 0.02) << depth;
+  }
+}
+
+TEST(Strata, KeepsHeightsOfAColumnInOrderAtItsStrongest) {
+  const Strata strata = strata_of(2.39f);
+  for (const float choice : {0.0f, 2.5f, 7.43f, 11.0f}) {
+    Row row(3600, choice, 80, 0.7f);
+    const std::vector<float> before = row.height;
+    row.ledge(strata);
+    bool moved = false;
+    for (std::size_t i = 1; i < kWidth; ++i) {
+      ASSERT_GT(row.height[i], row.height[i - 1]) << choice;
+      moved = moved || std::abs(row.height[i] - before[i]) > 0.5f;
+    }
+    EXPECT_TRUE(moved) << "no ledge at all";
+  }
+}
+
+TEST(Strata, MakesHardBedsSteeperThanSoftOnes) {
+  const Strata strata = strata_of(1.6f);
+  double hard = 0;
+  double soft = 0;
+  int hards = 0;
+  int softs = 0;
+  for (int part = 0; part < 40; ++part) {
+    Row row(3600, 5.0f, 80 + 47 * static_cast<float>(part), 0.5f);
+    const std::vector<float> before = row.height;
+    row.ledge(strata);
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const float hardness = strata.set(5).layer(strata.set(5).index_at(3600 - before[i])).hardness;
+      (hardness > 0.6f ? hard : soft) += static_cast<double>(row.slope_x[i]);
+      ++(hardness > 0.6f ? hards : softs);
+    }
+  }
+  ASSERT_GT(hards, 100);
+  ASSERT_GT(softs, 100);
+  EXPECT_GT(hard / hards, 1.2);
+  EXPECT_LT(soft / softs, 0.9);
+}
+
+TEST(Strata, GivesEachRockItsShareOfALayersArea) {
+  const Strata strata = strata_of(1.6f);
+  const int index = strata.set(2).index_at(2'000);
+  const Layer& layer = strata.set(2).layer(index);
+  const float height = 3'600 - 0.5f * (strata.set(2).top_m(index) + strata.set(2).top_m(index + 1));
+  testing::Random random(12);
+  int first = 0;
+  constexpr int kPlaces = 40'000;
+  for (int n = 0; n < kPlaces; ++n) {
+    const glm::dvec2 place{random.real(-1e7, 1e7), random.real(-1e7, 1e7)};
+    first += strata.rock_at(3'600, 2.0f, height, place) == layer.rocks[0] ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(first) / kPlaces, static_cast<double>(layer.cumulative[0]), 0.01);
+}
+
+TEST(Strata, GivesTheSameBitsOnEveryTarget) {
+  const Strata strata = strata_of(1.6f);
+  const auto run = [&] {
+    Row row(3'555.5f, 6.47f, -300, 27.7f);
+    strata.hardness_row(row.place(), row.height.data(), row.hardness.data());
+    row.ledge(strata);
+    return row;
+  };
+  const Row best = run();
+  const int targets = testing::for_each_simd_target([&](const char* target) {
+    const Row row = run();
+    EXPECT_EQ(row.height, best.height) << target;
+    EXPECT_EQ(row.hardness, best.hardness) << target;
+    EXPECT_EQ(row.slope_x, best.slope_x) << target;
+  });
+  EXPECT_GE(targets, 2) << "nothing was compared";
+}
+
+}  // namespace
+}  // namespace talus
