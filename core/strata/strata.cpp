@@ -88,7 +88,7 @@ void ledge_row_target(const StrataTables& tables, const StrataRow& r, const floa
     look_up(d, tables.ledge, hn::Sub(hn::LoadU(d, r.stack_m + i), h), hn::LoadU(d, r.choice + i), ledge, ledge_slope);
     const V shown = hn::Mul(hn::Mul(rising(steep, 0.4f * tables.ledge_slope, 1.6f * tables.ledge_slope),
                                     rising(hn::LoadU(d, r.district + i), -0.25f, 0.2f)),
-                            hn::Mul(rising(h, 5.0f, 60.0f), hn::Set(d, tables.ledge_scale)));
+                            hn::Mul(rising(h, 5.0f, 240.0f), hn::Set(d, tables.ledge_scale)));
     // Depth falls as height rises: d height' / d height = 1 + shown * d ledge / d depth.
     const V factor = hn::Add(hn::Set(d, 1.0f), hn::Mul(shown, ledge_slope));
     hn::StoreU(hn::Sub(h, hn::Mul(shown, ledge)), d, height + i);
@@ -110,7 +110,7 @@ namespace {
 /// A neutral rock: harder ones stand proud, softer ones recede.
 constexpr float kNeutralHardness = 0.53f;
 /// Ledges forget the layers above after this depth, in metres: a thick hard formation lifts its rim, not a continent.
-constexpr float kLeak_m = 160.0f;
+constexpr float kLeak_m = 80.0f;
 constexpr float kWindow_m = 45.0f;
 
 /// Edge of the patches in which a layer keeps one of its rocks, in metres.
@@ -119,7 +119,7 @@ constexpr double kPatch_m = 140.0;
 }  // namespace
 
 Strata::Strata(const StrataControls& controls) : controls_(controls) {
-  TALUS_CHECK(controls.sets >= 2 && controls.ledge < 2.6f);
+  TALUS_CHECK(controls.sets >= 2 && controls.ledge <= 1.8f);
   for (int n = 0; n < controls.sets; ++n) {
     sets_.emplace_back(mix64(controls.seed, static_cast<std::uint64_t>(n)));
     tabulate(sets_.back());

@@ -19,7 +19,7 @@ namespace talus {
 
 struct StrataControls {
   int sets = 12;
-  float ledge = 1.6f;         ///< metres of ledge per metre of the tables' ledge; below 2.6 heights stay in order
+  float ledge = 1.6f;         ///< metres of ledge per metre of the tables' ledge; up to 1.8 heights stay in order
   float ledge_slope = 0.25f;  ///< slope of the relief from which ledges show
   std::uint64_t seed = 0;
 };

@@ -59,7 +59,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"strata.fold_m", "m", 200, 20000, 3500, false, "Wavelength of the largest folds: less means tighter ones."},
   {"strata.tilt_m", "m", 0, 400, 240, false, "How far whole regions of layers tilt: more means steeper dips."},
   {"strata.tilt_wavelength_m", "m", 2000, 100000, 14000, false, "Wavelength of the tilt: less means steeper dips."},
-  {"strata.ledge", "", 0, 2.4, 1.6, false, "How far hard layers stand proud: more means higher steps and wider benches, 0 none."},
+  {"strata.ledge", "", 0, 1.8, 1.5, false, "How far hard layers stand proud: more means higher steps and wider benches, 0 none."},
   {"strata.ledge_slope", "", 0.01, 2, 0.25, false, "Slope of the relief from which ledges show: less terraces gentle hills too."},
   {"strata.district_m", "m", 500, 50000, 5200, false, "Wavelength of districts with and without ledges: more means wider ones."},
   {"strata.resistance", "", 0, 1, 0.4, false, "How much hard rock withstands erosion: more means shallower gullies in it."},

@@ -58,7 +58,7 @@ TEST(Strata, MeansHardnessOverTheRockAroundADepth) {
 }
 
 TEST(Strata, KeepsHeightsOfAColumnInOrderAtItsStrongest) {
-  const Strata strata = strata_of(2.39f);
+  const Strata strata = strata_of(1.8f);
   for (const float choice : {0.0f, 2.5f, 7.43f, 11.0f}) {
     Row row(3600, choice, 80, 0.7f);
     const std::vector<float> before = row.height;
