@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "client_sample/cli/arguments.hpp"
+#include "client_sample/cli/exit_code.hpp"
+#include "client_sample/cli/mesh_file.hpp"
+#include "client_sample/cli/text.hpp"
+
+namespace talus::cli {
+namespace {
+
+int talus(std::vector<std::string> words) {
+  words.insert(words.begin(), "talus");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  return run(static_cast<int>(argv.size()), argv.data());
+}
+
+/// A folder that is gone after the test.
+class Scratch {
+ public:
+  Scratch() : path_(std::filesystem::temp_directory_path() / "talus-cli-XXXXXX") {
+    std::string name = path_.string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    path_ = name;
+  }
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  std::string operator/(const char* name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST(ChunkKeyText, IsDecimalAndInsideTheWorldOrNothing) {
+  EXPECT_EQ(parse_chunk_key("0/12/3/-7"), (ChunkKey{0, 12, 3, -7}));
+  EXPECT_EQ(parse_chunk_key("12/1073741823/-1073741823/0"), (ChunkKey{12, kChunkLimit, -kChunkLimit, 0}));
+  for (const char* bad :
+       {"", "0", "0/1/2", "0/1/2/3/4", "0/1/2/", "/0/1/2", "0/+1/2/3", "0/ 1/2/3", "0/1.5/2/3", "13/0/0/0", "-1/0/0/0",
+        "0/1073741824/0/0", "0/99999999999/0/0", "0/x/0/0", "0/\xEF\xBC\x91/0/0"}) {
+    EXPECT_FALSE(parse_chunk_key(bad)) << bad;
+  }
+  EXPECT_EQ(format_chunk_key({0, 12, 3, -7}), "0/12/3/-7");
+}
+
+TEST(PlaceText, IsThreeFiniteNumbersOrNothing) {
+  EXPECT_EQ(parse_place("1,-2.5,1e9"), (glm::dvec3{1, -2.5, 1e9}));
+  for (const char* bad : {"", "1,2", "1,2,3,4", "nan,0,0", "0,inf,0", "1e999,0,0", "1, 2,3", "a,b,c"}) {
+    EXPECT_FALSE(parse_place(bad)) << bad;
+  }
+}
+
+TEST(JsonText, EscapesWhatHasToBe) {
+  EXPECT_EQ(json_string("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+}
+
+ChunkMesh triangle() {
+  ChunkMesh mesh;
+  mesh.positions = {{0, 0, 0}, {64, 0, 0}, {0, 0, 64}};
+  mesh.normals.assign(3, {0, 1, 0});
+  mesh.materials = {3, 5, 200};
+  mesh.ridges = {1, 2, 3};
+  mesh.indices = {0, 2, 1};
+  return mesh;
+}
+
+TEST(MeshFile, WritesObjInWorldMetresToTheLastDigit) {
+  const std::string obj = encode_obj(triangle(), protocol::mesh_lattice({0, 0, 0, 0}, 32, 1.0), {1e9, 2, -3});
+  EXPECT_THAT(obj, testing::HasSubstr("\nv 1000000001"));
+  EXPECT_THAT(obj, testing::HasSubstr("vn 0.00000 1.00000 0.00000\n"));
+  EXPECT_THAT(obj, testing::HasSubstr("f 1//1 3//3 2//2\n"));
+}
+
+TEST(MeshFile, WritesPlyAsLongAsItsHeadSays) {
+  const std::string ply = encode_ply(triangle(), protocol::mesh_lattice({0, 0, 0, 0}, 32, 1.0), {0, 0, 0});
+  const std::string end = "end_header\n";
+  const std::size_t body = ply.find(end) + end.size();
+  EXPECT_EQ(ply.size() - body, 3U * (3 * 8 + 3 * 4 + 5) + 13U);
+  double x = 0;
+  std::memcpy(&x, ply.data() + body + 41, sizeof x);
+  EXPECT_EQ(x, 1.0);
+}
+
+TEST(Cli, WritesALocalChunkInEveryFormat) {
+  const Scratch scratch;
+  for (const char* name : {"c.drc", "c.glb", "c.obj", "c.ply"}) {
+    EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / name, "--local"}), kDone) << name;
+    EXPECT_GT(content(scratch / name).size(), 500U) << name;
+  }
+  EXPECT_EQ(content(scratch / "c.glb").substr(0, 4), "glTF");
+  EXPECT_EQ(content(scratch / "c.drc").substr(0, 5), "DRACO");
+}
+
+TEST(Cli, SaysByItsExitCodeWhatWentWrong) {
+  const Scratch scratch;
+  const std::string out = scratch / "c.drc";
+  EXPECT_EQ(talus({"get", "0/0/1000/0", "-o", out, "--local"}), kNoSurface);
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(talus({"get", "0/0/0", "-o", out, "--local"}), kUsage);
+  EXPECT_EQ(talus({"get", "0/0/0/0", "-o", scratch / "c.stl", "--local"}), kUsage);
+  EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / "no/such/folder.drc", "--local"}), kFailed);
+  EXPECT_EQ(talus({"get", "0/0/0/0", "-o", out, "--manifest", "x"}), kUsage) << "--manifest needs --local";
+  EXPECT_EQ(talus({"info", "--server", "ftp://x"}), kUsage);
+  EXPECT_EQ(talus({"info", "--world", "../etc"}), kUsage);
+  EXPECT_EQ(talus({"fly", "--from", "1,2"}), kUsage);
+  EXPECT_EQ(talus({"fly", "--viewers", "0"}), kUsage);
+  EXPECT_EQ(talus({}), kUsage);
+  EXPECT_EQ(talus({"frobnicate"}), kUsage);
+  EXPECT_EQ(talus({"--help"}), kDone);
+}
+
+TEST(Cli, ChecksAndExplainsManifests) {
+  const Scratch scratch;
+  std::ofstream(scratch / "good.toml") << "name = \"alps\"\n";
+  std::ofstream(scratch / "bad.toml") << "nmae = \"alps\"\n";
+  EXPECT_EQ(talus({"manifest", "check", scratch / "good.toml"}), kDone);
+  EXPECT_EQ(talus({"manifest", "check", scratch / "bad.toml"}), kBadManifest);
+  EXPECT_EQ(talus({"manifest", "check", scratch / "absent.toml"}), kBadManifest);
+  EXPECT_EQ(talus({"manifest", "explain"}), kDone);
+  EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / "c.drc", "--local", "--manifest", scratch / "bad.toml"}),
+            kBadManifest);
+}
+
+}  // namespace
+}  // namespace talus::cli
