@@ -78,7 +78,7 @@ const std::vector<Library>& libraries() {
       {"CLI/", {"server/app", "client_sample/cli", "client_sample/load"}, 3},
       {"spdlog/", {"server/observe"}, 1},
       {"prometheus/", {"server/observe"}, 1},
-      {"openssl/", {"protocol"}, 0},
+      {"openssl/", {"protocol", "server/net"}, 0},
       {"http_parser.h", {"server/net", "client_sample/library"}, 0},
       {"wslay/", {"server/net", "client_sample/library"}, 0},
       {"hwy/", {"core"}, 0},
