@@ -1,0 +1,63 @@
+// talusd: reads what it is asked, serves until a signal, ends cleanly.
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <semaphore>
+#include <string>
+#include <variant>
+
+#include "server/app/command_line.hpp"
+#include "server/app/server.hpp"
+
+namespace {
+
+/// As many descriptors as the system lets us have: connections are bounded by a limit of our own.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+/// Chunks are allocated by one thread and freed by another. With an arena for each thread that leaves every arena full
+/// of holes; few arenas share them.
+void tame_allocator() {
+  constexpr int kArenas = 2;
+  mallopt(M_ARENA_MAX, kArenas);
+}
+
+int serve(const talus::server::Settings& settings) {
+  std::counting_semaphore<> signals{0};
+  std::atomic<int> received{0};
+  const auto on_signal = [&] {
+    // Who asks twice does not want to wait for the drain.
+    if (received.fetch_add(1) > 0) std::_Exit(EXIT_FAILURE);
+    signals.release();
+  };
+  auto server = talus::server::Server::start(settings, on_signal);
+  if (!server) {
+    std::fprintf(stderr, "talusd: %s", server.error().c_str());
+    return EXIT_FAILURE;
+  }
+  std::printf("%s\n", (*server)->ready_line().c_str());
+  std::fflush(stdout);
+  signals.acquire();
+  (*server)->stop();
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tame_allocator();
+  raise_descriptor_limit();
+  const auto asked = talus::server::parse_command_line(argc, argv);
+  if (const auto* print = std::get_if<talus::server::PrintAndEnd>(&asked)) {
+    std::fputs(print->text.c_str(), print->status == 0 ? stdout : stderr);
+    return print->status;
+  }
+  return serve(std::get<talus::server::Serve>(asked).settings);
+}

@@ -1,0 +1,176 @@
+#include "server/app/server.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/app/world_files.hpp"
+#include "server/net/server.hpp"
+#include "server/observe/json.hpp"
+#include "server/observe/log.hpp"
+#include "server/world/terrain_builder.hpp"
+
+namespace talus::server {
+
+namespace {
+
+std::size_t processors() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+std::size_t worker_threads(const Settings& settings) {
+  return settings.threads != 0 ? settings.threads : processors();
+}
+
+std::size_t network_threads(const Settings& settings) {
+  return settings.net_threads != 0 ? settings.net_threads : std::clamp<std::size_t>(processors() / 4, 1, 8);
+}
+
+std::expected<StaticFiles, std::string> load_viewer(const std::string& folder) {
+  if (folder.empty()) return StaticFiles{};
+  auto files = StaticFiles::load(folder);
+  if (!files) return std::unexpected("viewer: " + files.error() + "\n");
+  if (files->find("/") == nullptr) return std::unexpected("viewer: " + folder + " has no index.html\n");
+  return files;
+}
+
+}  // namespace
+
+/// In order of making; destroyed the other way round. The pool stops before the service its jobs belong to, the network
+/// before both.
+struct Server::Parts {
+  Parts(Settings with, Worlds hosted, StaticFiles viewer)
+      : settings(std::move(with)),
+        worlds(std::move(hosted)),
+        files(std::move(viewer)),
+        cache(settings.cache_mib * 1024 * 1024),
+        pool({worker_threads(settings), settings.cold_queue}),
+        builder(worlds, clock, metrics, pool.threads()),
+        chunks(cache, pool, builder, clock, metrics),
+        net{worlds, files, settings.limits, clock, chunks, pool, metrics, worlds_json(worlds), {}, {}, {}, {}},
+        network(net, network_threads(settings)) {}
+
+  Settings settings;
+  SystemClock clock;
+  Metrics metrics;
+  Worlds worlds;
+  StaticFiles files;
+  MemoryCache cache;
+  JobPool pool;
+  TerrainBuilder builder;
+  ChunkService chunks;
+  NetContext net;
+  NetServer network;
+  std::string http_address;
+  std::string tcp_address;
+  std::string admin_address;
+  std::string ready_line;
+  bool is_stopped = false;
+
+  std::expected<void, std::string> listen();
+  void add_gauges();
+  void write_ready_line();
+};
+
+std::expected<void, std::string> Server::Parts::listen() {
+  const auto listen_on = [&](Listen kind, const std::string& text,
+                             std::string& bound) -> std::expected<void, std::string> {
+    if (text == "off") return {};
+    const auto endpoint = parse_endpoint(text);
+    if (!endpoint) return std::unexpected(text + ": " + endpoint.error());
+    auto address = network.listen(kind, *endpoint);
+    if (!address) return std::unexpected(address.error());
+    bound = std::move(*address);
+    return {};
+  };
+  if (auto done = listen_on(Listen::kHttp, settings.listen, http_address); !done) return done;
+  if (auto done = listen_on(Listen::kTcp, settings.tcp_listen, tcp_address); !done) return done;
+  return listen_on(Listen::kAdmin, settings.admin_listen, admin_address);
+}
+
+void Server::Parts::add_gauges() {
+  const auto add = [&](const char* name, const char* help, GaugeReading reading) {
+    metrics.gauge(name, help, std::move(reading));
+  };
+  add("talus_cache_bytes", "Memory cache, overhead included", [this] { return static_cast<double>(cache.bytes()); });
+  add("talus_cache_bytes_max", "What the memory cache may take",
+      [this] { return static_cast<double>(cache.bytes_max()); });
+  add("talus_cache_entries", "Chunks in the memory cache", [this] { return static_cast<double>(cache.entries()); });
+  add("talus_queue_stream_jobs", "Chunks waiting to be made, for streams",
+      [this] { return static_cast<double>(pool.queued(Lane::kStream)); });
+  add("talus_queue_http_jobs", "Jobs waiting, for HTTP",
+      [this] { return static_cast<double>(pool.queued(Lane::kHttp)); });
+  add("talus_flights", "Chunks waiting or being made", [this] { return static_cast<double>(chunks.flights()); });
+  add("talus_jobs_failed", "Jobs that let an exception escape", [this] { return static_cast<double>(pool.failed()); });
+  add("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });
+  add("talus_sessions", "Streaming sessions open",
+      [this] { return static_cast<double>(net.sessions.load(std::memory_order_relaxed)); });
+}
+
+void Server::Parts::write_ready_line() {
+  const auto address = [](const std::string& text) { return text.empty() ? std::string("null") : json_string(text); };
+  ready_line = "{\"ready\":true,\"http\":" + address(http_address) + ",\"tcp\":" + address(tcp_address) +
+               ",\"admin\":" + address(admin_address) + ",\"worlds\":[";
+  for (const auto& world : worlds) {
+    if (ready_line.back() != '[') ready_line += ',';
+    append_json_string(ready_line, world->name());
+  }
+  ready_line += "]}";
+}
+
+std::expected<std::unique_ptr<Server>, std::string> Server::start(const Settings& settings,
+                                                                  std::function<void()> on_signal) {
+  set_log_level(log_level(settings.log_level).value_or(LogLevel::kInfo));
+  auto worlds = load_worlds(settings.world);
+  if (!worlds) return std::unexpected(worlds.error());
+  auto files = load_viewer(settings.viewer);
+  if (!files) return std::unexpected(files.error());
+  auto parts = std::make_unique<Parts>(settings, std::move(*worlds), std::move(*files));
+  if (const auto listening = parts->listen(); !listening) return std::unexpected(listening.error() + "\n");
+  parts->add_gauges();
+  parts->write_ready_line();
+  parts->network.start(std::move(on_signal));
+  parts->net.is_ready.store(true, std::memory_order_relaxed);
+  log(LogLevel::kInfo, "ready",
+      {{"http", parts->http_address},
+       {"tcp", parts->tcp_address},
+       {"admin", parts->admin_address},
+       {"threads", std::uint64_t{parts->pool.threads()}},
+       {"cache_mib", std::uint64_t{settings.cache_mib}}});
+  return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Server::~Server() {
+  parts_->settings.drain_s = 0;
+  stop();
+}
+
+const std::string& Server::ready_line() const {
+  return parts_->ready_line;
+}
+const std::string& Server::http_address() const {
+  return parts_->http_address;
+}
+const std::string& Server::tcp_address() const {
+  return parts_->tcp_address;
+}
+const std::string& Server::admin_address() const {
+  return parts_->admin_address;
+}
+const Metrics& Server::metrics() const {
+  return parts_->metrics;
+}
+
+void Server::stop() {
+  if (std::exchange(parts_->is_stopped, true)) return;
+  parts_->net.is_ready.store(false, std::memory_order_relaxed);
+  log(LogLevel::kInfo, "draining", {{"connections", std::uint64_t{parts_->net.connections.inside()}}});
+  parts_->network.stop(parts_->settings.drain_s);
+  parts_->pool.stop();
+  log(LogLevel::kInfo, "stopped");
+}
+
+}  // namespace talus::server

@@ -1,0 +1,42 @@
+// The composition root: what is made, in which order, and how it ends.
+#pragma once
+
+#include <expected>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/app/settings.hpp"
+#include "server/observe/metrics.hpp"
+
+namespace talus::server {
+
+class Server {
+ public:
+  /// Loads worlds and viewer, makes the pool, listens, runs. `on_signal` is called on a network thread for every SIGINT
+  /// and SIGTERM. The error is for the operator, whole sentences, one a line.
+  static std::expected<std::unique_ptr<Server>, std::string> start(
+      const Settings& settings, std::function<void()> on_signal = [] {});
+  /// Stops at once, unless `stop` was called.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// One line of JSON for whoever started the process: addresses as bound, worlds.
+  const std::string& ready_line() const;
+  /// Addresses as bound; empty when off.
+  const std::string& http_address() const;
+  const std::string& tcp_address() const;
+  const std::string& admin_address() const;
+  const Metrics& metrics() const;
+
+  /// Refuses the new, lets the old end within `drain_s`, then ends it. Returns when all threads have ended.
+  void stop();
+
+ private:
+  struct Parts;
+  explicit Server(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace talus::server

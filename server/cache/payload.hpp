@@ -1,0 +1,49 @@
+// What a door hands out for a chunk, and the name it goes by. Immutable once published; any thread.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/base/hash.hpp"
+#include "core/grid/chunk_key.hpp"
+#include "core/mesh/chunk_mesh.hpp"
+
+namespace talus::server {
+
+enum class PayloadFormat : std::uint8_t { kDraco, kGlb };
+
+/// Encoded bytes of one chunk. Without bytes when the chunk is all air or all rock.
+struct ChunkPayload {
+  ChunkKind kind = ChunkKind::kAir;
+  std::vector<std::byte> bytes;
+};
+using PayloadRef = std::shared_ptr<const ChunkPayload>;
+
+/// Names a payload: equal names, equal bytes.
+struct PayloadName {
+  std::uint32_t world = 0;  ///< index of the world in this server
+  PayloadFormat format = PayloadFormat::kDraco;
+  ChunkKey key;
+  glm::dvec3 origin{};  ///< metres; what a glb is translated against, zero for other formats
+  friend bool operator==(const PayloadName&, const PayloadName&) = default;
+};
+
+struct PayloadNameHash {
+  std::size_t operator()(const PayloadName& name) const noexcept {
+    std::uint64_t h =
+        mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 8) | static_cast<std::uint8_t>(name.format));
+    if (name.format == PayloadFormat::kGlb) {
+      // + 0.0 makes one of the two zeros, which are equal.
+      for (const double c : {name.origin.x, name.origin.y, name.origin.z})
+        h = mix64(h, std::bit_cast<std::uint64_t>(c + 0.0));
+    }
+    return static_cast<std::size_t>(h);
+  }
+};
+
+}  // namespace talus::server

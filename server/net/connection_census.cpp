@@ -1,0 +1,36 @@
+#include "server/net/connection_census.hpp"
+
+#include <bit>
+
+#include "core/base/hash.hpp"
+
+namespace talus::server {
+
+std::size_t ConnectionCensus::AddressHash::operator()(const PeerAddress& address) const noexcept {
+  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(address);
+  return static_cast<std::size_t>(mix64(halves[0], halves[1]));
+}
+
+std::pair<ConnectionCensus::Verdict, ConnectionCensus::Place> ConnectionCensus::enter(const PeerAddress& address) {
+  const std::lock_guard lock(mutex_);
+  if (all_ >= all_max_) return {Verdict::kTooMany, Place{}};
+  std::size_t& here = by_address_[address];
+  if (here >= address_max_) return {Verdict::kTooManyFromAddress, Place{}};
+  ++here;
+  ++all_;
+  return {Verdict::kWelcome, Place{this, address}};
+}
+
+void ConnectionCensus::leave(const PeerAddress& address) {
+  const std::lock_guard lock(mutex_);
+  --all_;
+  const auto found = by_address_.find(address);
+  if (--found->second == 0) by_address_.erase(found);
+}
+
+std::size_t ConnectionCensus::connections() const {
+  const std::lock_guard lock(mutex_);
+  return all_;
+}
+
+}  // namespace talus::server

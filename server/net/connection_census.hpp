@@ -1,0 +1,59 @@
+// How many connections there are, in all and from each address. Any thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <unordered_map>
+#include <utility>
+
+namespace talus::server {
+
+/// An IPv6 address, or an IPv4 address mapped into it. Hosts of one IPv6 network share its first 64 bits.
+using PeerAddress = std::array<unsigned char, 16>;
+
+class ConnectionCensus {
+ public:
+  ConnectionCensus(std::size_t all_max, std::size_t address_max) : all_max_(all_max), address_max_(address_max) {}
+
+  /// One counted connection; uncounted when it is destroyed. Must not outlive its census.
+  class Place {
+   public:
+    Place() = default;
+    Place(ConnectionCensus* census, const PeerAddress& address) : census_(census), address_(address) {}
+    Place(Place&& other) noexcept : census_(std::exchange(other.census_, nullptr)), address_(other.address_) {}
+    Place& operator=(Place&& other) noexcept {
+      std::swap(census_, other.census_);
+      std::swap(address_, other.address_);
+      return *this;
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+    ~Place() {
+      if (census_ != nullptr) census_->leave(address_);
+    }
+
+   private:
+    ConnectionCensus* census_ = nullptr;
+    PeerAddress address_{};
+  };
+
+  enum class Verdict : std::uint8_t { kWelcome, kTooMany, kTooManyFromAddress };
+  std::pair<Verdict, Place> enter(const PeerAddress& address);
+  std::size_t connections() const;
+
+ private:
+  struct AddressHash {
+    std::size_t operator()(const PeerAddress& address) const noexcept;
+  };
+  void leave(const PeerAddress& address);
+
+  const std::size_t all_max_;
+  const std::size_t address_max_;
+  mutable std::mutex mutex_;
+  std::size_t all_ = 0;
+  std::unordered_map<PeerAddress, std::size_t, AddressHash> by_address_;
+};
+
+}  // namespace talus::server

@@ -1,0 +1,129 @@
+#include "server/net/http_answer.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <iterator>
+
+#include "server/observe/json.hpp"
+
+namespace talus::server {
+
+namespace {
+
+std::string_view reason_of(int status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 204:
+      return "No Content";
+    case 304:
+      return "Not Modified";
+    case 400:
+      return "Bad Request";
+    case 404:
+      return "Not Found";
+    case 405:
+      return "Method Not Allowed";
+    case 413:
+      return "Content Too Large";
+    case 414:
+      return "URI Too Long";
+    case 426:
+      return "Upgrade Required";
+    case 429:
+      return "Too Many Requests";
+    case 431:
+      return "Request Header Fields Too Large";
+    default:
+      return "Service Unavailable";
+  }
+}
+
+void append_field(std::string& out, std::string_view name, std::string_view value) {
+  if (!value.empty()) out.append(name).append(": ").append(value).append("\r\n");
+}
+
+}  // namespace
+
+std::span<const std::byte> HttpAnswer::body() const {
+  if (payload != nullptr) return payload->bytes;
+  if (file != nullptr) return file->bytes;
+  return std::as_bytes(std::span(text));
+}
+
+HttpAnswer json_answer(std::string body) {
+  HttpAnswer answer;
+  answer.content_type = "application/json";
+  answer.text = std::move(body);
+  return answer;
+}
+
+HttpAnswer error_answer(int status, std::string_view code, std::string_view message, std::string_view fields) {
+  HttpAnswer answer = json_answer("{\"error\":" + json_string(code) + ",\"message\":" + json_string(message) + "}");
+  answer.status = status;
+  answer.cache_control = "no-store";
+  answer.fields = fields;
+  return answer;
+}
+
+HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format) {
+  HttpAnswer answer;
+  answer.etag = etag;
+  answer.cache_control = kImmutable;
+  if (payload->kind != ChunkKind::kMesh) {
+    answer.status = 204;
+    answer.fields = payload->kind == ChunkKind::kAir ? "Talus-Chunk: air\r\n" : "Talus-Chunk: rock\r\n";
+    return answer;
+  }
+  answer.content_type = format == PayloadFormat::kDraco ? "application/octet-stream" : "model/gltf-binary";
+  answer.fields = "Talus-Chunk: mesh\r\n";
+  answer.payload = std::move(payload);
+  return answer;
+}
+
+HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place) {
+  if (!place) return error_answer(404, "no_land", "near: no dry land within about 130 km");
+  HttpAnswer answer = json_answer(fmt::format(R"({{"x":{},"y":{},"z":{}}})", place->x, place->y, place->z));
+  answer.cache_control = kNoCache;
+  return answer;
+}
+
+void write_head(const HttpAnswer& answer, const HeadOptions& options, std::string& out) {
+  out.clear();
+  fmt::format_to(std::back_inserter(out), "HTTP/1.1 {} {}\r\nDate: {}\r\nServer: talus\r\n", answer.status,
+                 reason_of(answer.status), options.date);
+  // A 204 or 304 has no body and, by RFC 9110, needs no length.
+  if (answer.status != 204 && answer.status != 304) {
+    append_field(out, "Content-Type", answer.content_type);
+    fmt::format_to(std::back_inserter(out), "Content-Length: {}\r\n", answer.body().size());
+  }
+  append_field(out, "ETag", answer.etag);
+  append_field(out, "Cache-Control", answer.cache_control);
+  out.append("Access-Control-Allow-Origin: *\r\nAccess-Control-Expose-Headers: ETag, Talus-Chunk\r\n");
+  out.append("X-Content-Type-Options: nosniff\r\n");
+  out.append(answer.fields);
+  if (!options.is_keep_alive) {
+    out.append("Connection: close\r\n");
+  } else if (options.names_keep_alive) {
+    out.append("Connection: keep-alive\r\n");
+  }
+  out.append("\r\n");
+}
+
+std::string http_date(std::int64_t unix_seconds) {
+  constexpr std::array<std::string_view, 7> kDays{"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
+  constexpr std::array<std::string_view, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                                     "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  const std::chrono::sys_seconds at{std::chrono::seconds(unix_seconds)};
+  const auto day = std::chrono::floor<std::chrono::days>(at);
+  const std::chrono::year_month_day date{day};
+  const std::chrono::hh_mm_ss time{at - day};
+  return fmt::format("{}, {:02} {} {:04} {:02}:{:02}:{:02} GMT", kDays[std::chrono::weekday{day}.c_encoding()],
+                     static_cast<unsigned>(date.day()), kMonths[static_cast<unsigned>(date.month()) - 1],
+                     static_cast<int>(date.year()), time.hours().count(), time.minutes().count(),
+                     time.seconds().count());
+}
+
+}  // namespace talus::server

@@ -1,0 +1,54 @@
+// An HTTP answer as a value, and its head as bytes. Pure.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <glm/vec3.hpp>
+
+#include "server/cache/payload.hpp"
+#include "server/net/static_files.hpp"
+
+namespace talus::server {
+
+/// Views point to literals, a world or a file: all outlive the answer. A body is text, a payload or a file, never two.
+struct HttpAnswer {
+  int status = 200;
+  std::string_view content_type;
+  std::string_view etag;
+  std::string_view cache_control;
+  std::string_view fields;  ///< further header lines, each with its CR LF
+  std::string text;
+  PayloadRef payload;
+  StaticFileRef file;
+
+  std::span<const std::byte> body() const;
+};
+
+inline constexpr std::string_view kImmutable = "public, max-age=31536000, immutable";
+inline constexpr std::string_view kNoCache = "no-cache";
+
+HttpAnswer json_answer(std::string body);
+/// `{"error": code, "message": message}`; `fields` must outlive the answer.
+HttpAnswer error_answer(int status, std::string_view code, std::string_view message, std::string_view fields = {});
+
+/// 200 with the payload, or 204 and what fills the chunk; for ever cacheable. `etag` must outlive the answer.
+HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format);
+/// The place as JSON, or 404.
+HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place);
+
+struct HeadOptions {
+  std::string_view date;  ///< IMF-fixdate
+  bool is_keep_alive = true;
+  bool names_keep_alive = false;  ///< HTTP/1.0 peers want to be told
+};
+/// Replaces `out` by the head of `answer`; reuses its memory.
+void write_head(const HttpAnswer& answer, const HeadOptions& options, std::string& out);
+
+/// "Sun, 22 Nov 2026 22:47:31 GMT"
+std::string http_date(std::int64_t unix_seconds);
+
+}  // namespace talus::server

@@ -1,0 +1,395 @@
+#include "server/net/http_connection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base/check.hpp"
+#include "protocol/limits.hpp"
+#include "server/net/http_answer.hpp"
+#include "server/net/http_request.hpp"
+#include "server/net/stream_session.hpp"
+#include "server/net/websocket_handshake.hpp"
+#include "server/observe/log.hpp"
+#include "server/world/place_query.hpp"
+
+namespace talus::server {
+
+namespace {
+
+constexpr std::size_t kReadBytes = 4096;
+constexpr std::string_view kRetry = "Retry-After: 1\r\n";
+/// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
+/// connection and take the answer from under the peer.
+constexpr double kLingerS = 2;
+constexpr std::size_t kLingerBytes = 64 * 1024;
+/// A peer that has closed its side is taken for gone when its answer takes longer than this.
+constexpr double kHalfClosedS = 1;
+
+/// One connection: reads a head, answers, and again. All on one thread.
+class HttpConnection final : public std::enable_shared_from_this<HttpConnection>, public Swept {
+ public:
+  HttpConnection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door)
+      : Swept(sweeper),
+        net_(net),
+        executor_(socket.get_executor()),
+        socket_(std::move(socket)),
+        pass_(std::move(pass)),
+        door_(door),
+        scanner_(net.limits),
+        bell_(socket_.get_executor()) {
+    set_deadline(net.limits.silent_s, Count::kSilentTimeout);
+  }
+
+  Awaitable<void> run();
+  void sweep(Instant now) override;
+  void drain() override;
+  void abort() override;
+
+ private:
+  using Question = std::move_only_function<HttpAnswer(const World&)>;
+  enum class Next { kRequest, kEnd };
+
+  Awaitable<bool> read_more();
+  Awaitable<Next> serve(std::string_view head);
+  Awaitable<Next> refuse(HttpFault fault);
+  Awaitable<HttpAnswer> answer_chunk(PayloadName name);
+  Awaitable<HttpAnswer> answer_query(std::size_t world, Question question);
+  Awaitable<Next> upgrade(std::size_t world, std::string_view head, HttpMethod method);
+  Awaitable<bool> send(HttpAnswer answer, bool is_head_only);
+  Awaitable<bool> write_all(std::array<asio::const_buffer, 2> buffers);
+  Awaitable<void> linger();
+  void begin_wait();
+  void count(const HttpAnswer& answer);
+
+  void set_deadline(double s, Count reason) {
+    deadline_ = net_.clock.now() + seconds(s);
+    deadline_reason_ = reason;
+  }
+
+  NetContext& net_;
+  const asio::io_context::executor_type executor_;
+  Socket socket_;
+  ConnectionPass pass_;
+  const Door door_;
+  HeadScanner scanner_;
+  std::vector<char> input_;  ///< [0, input_size_) is received and not answered
+  std::size_t input_size_ = 0;
+  std::string head_;  ///< of the answer being sent
+  Instant deadline_ = Instant::max();
+  Count deadline_reason_ = Count::kSilentTimeout;
+  bool is_keep_alive_ = true;
+  bool is_http_1_0_ = false;
+  bool is_draining_ = false;
+  bool is_idle_ = true;  ///< between requests
+  std::uint64_t requests_ = 0;
+
+  // What a pool thread answers: posted here, then the bell is rung.
+  Bell bell_;
+  bool is_waiting_ = false;
+  Instant waiting_since_{};
+  std::optional<ChunkResult> chunk_result_;
+  std::optional<HttpAnswer> query_result_;
+};
+
+Awaitable<void> HttpConnection::run() {
+  for (;;) {
+    const auto length = scanner_.scan(std::string_view(input_.data(), input_size_));
+    if (!length) {
+      co_await refuse(length.error());
+      break;
+    }
+    if (!*length) {
+      if (!co_await read_more()) break;
+      continue;
+    }
+    is_idle_ = false;
+    deadline_ = Instant::max();
+    const std::size_t head_bytes = **length;
+    const Next next = co_await serve(std::string_view(input_.data(), head_bytes));
+    if (next == Next::kEnd || !is_keep_alive_) break;
+    std::memmove(input_.data(), input_.data() + head_bytes, input_size_ - head_bytes);
+    input_size_ -= head_bytes;
+    scanner_.reset();
+    is_idle_ = input_size_ == 0;
+    if (is_idle_ && is_draining_) break;
+    if (is_idle_) {
+      set_deadline(net_.limits.idle_s, Count::kIdleTimeout);
+    } else {
+      set_deadline(net_.limits.head_s, Count::kHeadTimeout);
+    }
+  }
+  close_socket(socket_);
+}
+
+Awaitable<bool> HttpConnection::read_more() {
+  // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
+  if (input_.size() < input_size_ + kReadBytes) input_.resize(input_size_ + kReadBytes);
+  const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
+  const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
+  if (error) co_return false;
+  if (input_size_ == 0) {
+    is_idle_ = false;
+    set_deadline(net_.limits.head_s, Count::kHeadTimeout);
+    // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
+    std::size_t skipped = 0;
+    if (got >= 2 && input_[0] == '\r' && input_[1] == '\n') skipped = 2;
+    std::memmove(input_.data(), input_.data() + skipped, got - skipped);
+    input_size_ = got - skipped;
+    co_return true;
+  }
+  input_size_ += got;
+  co_return true;
+}
+
+Awaitable<HttpConnection::Next> HttpConnection::refuse(HttpFault fault) {
+  net_.metrics.add(fault.status == 414   ? Count::kUriTooLong
+                   : fault.status == 431 ? Count::kHeadTooLarge
+                   : fault.status == 413 ? Count::kBodyTooLarge
+                                         : Count::kBadRequest);
+  is_keep_alive_ = false;
+  HttpAnswer answer = error_answer(fault.status, fault.code, fault.message);
+  if (co_await send(std::move(answer), false)) co_await linger();
+  co_return Next::kEnd;
+}
+
+Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
+  const Instant start = net_.clock.now();
+  const auto request = parse_head(head, net_.limits);
+  if (!request) co_return co_await refuse(request.error());
+  is_http_1_0_ = request->is_http_1_0;
+  is_keep_alive_ = request->is_keep_alive && !request->has_body && !is_draining_;
+  if (++requests_ >= net_.limits.requests_per_connection && is_keep_alive_) {
+    net_.metrics.add(Count::kRequestsExhausted);
+    is_keep_alive_ = false;
+  }
+  const RouteContext context{net_.worlds, net_.files, net_.worlds_json, door_,
+                             net_.is_ready.load(std::memory_order_relaxed)};
+  Route route = resolve(*request, context);
+  net_.metrics.record(Hop::kReadLoop, net_.clock.now() - start);
+
+  HttpAnswer answer;
+  if (auto* at_once = std::get_if<AnswerRoute>(&route)) {
+    answer = std::move(at_once->answer);
+  } else if (const auto* chunk = std::get_if<ChunkRoute>(&route)) {
+    answer = co_await answer_chunk(chunk->name);
+  } else if (const auto* spawn = std::get_if<SpawnRoute>(&route)) {
+    Question question = [near_m = spawn->near_m](const World& world) {
+      return spawn_answer(standing_place(world.function(), near_m));
+    };
+    answer = co_await answer_query(spawn->world, std::move(question));
+  } else if (auto* points = std::get_if<PointsRoute>(&route)) {
+    Question question = [places = std::move(points->places_m)](const World& world) {
+      return json_answer(points_json(world.function(), places));
+    };
+    answer = co_await answer_query(points->world, std::move(question));
+  } else if (const auto* stream = std::get_if<StreamRoute>(&route)) {
+    co_return co_await upgrade(stream->world, head, request->method);
+  } else {
+    answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
+    answer.text = net_.metrics.text();
+  }
+  const bool is_head_only = request->method == HttpMethod::kHead;
+  const bool was_sent = co_await send(std::move(answer), is_head_only);
+  if (was_sent && request->has_body) co_await linger();
+  co_return was_sent ? Next::kRequest : Next::kEnd;
+}
+
+Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
+  ChunkService::Done done = [self = shared_from_this()](ChunkResult result) mutable {
+    HttpConnection& connection = *self;
+    asio::post(connection.executor_, [self = std::move(self), result = std::move(result)]() mutable {
+      if (!self->is_waiting_) return;
+      self->chunk_result_ = std::move(result);
+      self->bell_.ring();
+    });
+  };
+  ChunkService::Answer answer = net_.chunks.request(name, Lane::kHttp, 0.0, std::move(done));
+  ChunkResult result = std::unexpected(ChunkError::kBusy);
+  if (auto* payload = std::get_if<PayloadRef>(&answer)) {
+    result = std::move(*payload);
+  } else if (std::holds_alternative<ChunkService::Ticket>(answer)) {
+    begin_wait();
+    while (is_waiting_ && !chunk_result_) co_await bell_.wait();
+    is_waiting_ = false;
+    if (chunk_result_) result = std::move(*chunk_result_);
+    chunk_result_.reset();
+  }
+  if (!result) {
+    co_return result.error() == ChunkError::kBusy
+        ? error_answer(503, "busy", "too many chunks are being made: come again", kRetry)
+        : error_answer(503, "chunk_failed", "this chunk could not be made", kRetry);
+  }
+  co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
+}
+
+Awaitable<HttpAnswer> HttpConnection::answer_query(std::size_t world, Question question) {
+  JobPool::Work work = [self = shared_from_this(), question = std::move(question),
+                        &of = *net_.worlds[world]](const JobPool::Context&) mutable {
+    HttpAnswer answer;
+    try {
+      answer = question(of);
+    } catch (const std::exception& fault) {
+      log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
+      answer = error_answer(503, "query_failed", "this question could not be answered", kRetry);
+    }
+    HttpConnection& connection = *self;
+    asio::post(connection.executor_, [self = std::move(self), answer = std::move(answer)]() mutable {
+      if (!self->is_waiting_) return;
+      self->query_result_ = std::move(answer);
+      self->bell_.ring();
+    });
+  };
+  const JobPool::JobRef job = net_.pool.push(Lane::kHttp, 0.0, std::move(work));
+  if (job == nullptr) {
+    net_.metrics.add(Count::kQueryShed);
+    co_return error_answer(503, "busy", "too many questions at once: come again", kRetry);
+  }
+  begin_wait();
+  while (is_waiting_ && !query_result_) co_await bell_.wait();
+  is_waiting_ = false;
+  if (!query_result_) {
+    net_.pool.cancel(job);
+    co_return error_answer(503, "busy", "the answer took too long: come again", kRetry);
+  }
+  HttpAnswer answer = std::move(*query_result_);
+  query_result_.reset();
+  co_return answer;
+}
+
+Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::string_view head, HttpMethod method) {
+  const auto request = parse_head(head, net_.limits);
+  TALUS_CHECK(request.has_value());
+  auto handshake = websocket_handshake(*request);
+  if (!handshake) {
+    HttpAnswer answer = std::move(handshake.error());
+    co_return co_await send(std::move(answer), method == HttpMethod::kHead) ? Next::kRequest : Next::kEnd;
+  }
+  head_ = std::move(*handshake);
+  const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_), asio::const_buffer{}};
+  if (!co_await write_all(buffers)) co_return Next::kEnd;
+  StreamStart start;
+  start.framing = make_websocket_framing(protocol::kInboundMessageBytesMax);
+  start.world = world;
+  const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
+  start.received.assign(rest.begin(), rest.end());
+  deadline_ = Instant::max();
+  start_stream_session(net_, sweeper(), std::move(socket_), std::move(pass_), std::move(start));
+  co_return Next::kEnd;
+}
+
+Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
+  count(answer);
+  const HeadOptions options{sweeper().http_date(), is_keep_alive_, is_http_1_0_};
+  write_head(answer, options, head_);
+  const auto body = answer.body();
+  const bool has_body = !is_head_only && answer.status != 204 && answer.status != 304;
+  const std::array<asio::const_buffer, 2> buffers{
+      asio::buffer(head_), has_body ? asio::const_buffer(body.data(), body.size()) : asio::const_buffer{}};
+  const Instant start = net_.clock.now();
+  const bool was_sent = co_await write_all(buffers);
+  net_.metrics.record(Hop::kWriteLoop, net_.clock.now() - start);
+  co_return was_sent;
+}
+
+/// One gather write when the peer keeps up: it is tried at once, and waited for only if the kernel is full.
+Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buffers) {
+  for (;;) {
+    asio::error_code error;
+    std::size_t sent = socket_.write_some(buffers, error);
+    if (error && error != asio::error::would_block) co_return false;
+    for (asio::const_buffer& buffer : buffers) {
+      const std::size_t of_this = std::min(sent, buffer.size());
+      buffer += of_this;
+      sent -= of_this;
+    }
+    if (buffers[0].size() + buffers[1].size() == 0) break;
+    set_deadline(net_.limits.write_stall_s, Count::kWriteStalled);
+    const auto [wait_error] = co_await socket_.async_wait(Socket::wait_write, kAwait);
+    if (wait_error) co_return false;
+  }
+  deadline_ = Instant::max();
+  co_return true;
+}
+
+Awaitable<void> HttpConnection::linger() {
+  asio::error_code ignored;
+  socket_.shutdown(Socket::shutdown_send, ignored);
+  set_deadline(kLingerS, Count::kEnd);
+  std::array<char, kReadBytes> dropped;
+  for (std::size_t total = 0; total < kLingerBytes;) {
+    const asio::mutable_buffer into(dropped.data(), dropped.size());
+    const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
+    if (error) break;
+    total += got;
+  }
+}
+
+void HttpConnection::count(const HttpAnswer& answer) {
+  switch (answer.status) {
+    case 200:
+      return net_.metrics.add(Count::kHttpOk);
+    case 204:
+      return net_.metrics.add(Count::kHttpNoContent);
+    case 304:
+      return net_.metrics.add(Count::kHttpNotModified);
+    default:
+      return net_.metrics.add(answer.status >= 500 ? Count::kHttpServerError : Count::kHttpClientError);
+  }
+}
+
+void HttpConnection::begin_wait() {
+  is_waiting_ = true;
+  waiting_since_ = net_.clock.now();
+}
+
+void HttpConnection::sweep(Instant now) {
+  if (is_waiting_) {
+    // A ticket is dropped as soon as nobody waits behind this connection.
+    const bool is_gone = now - waiting_since_ > seconds(kHalfClosedS) && is_peer_gone(socket_);
+    if (!is_gone && now - waiting_since_ < seconds(net_.limits.wait_s)) return;
+    is_waiting_ = false;
+    bell_.ring();
+    return;
+  }
+  if (now < deadline_) return;
+  deadline_ = Instant::max();
+  if (deadline_reason_ != Count::kEnd) net_.metrics.add(deadline_reason_);
+  if (deadline_reason_ == Count::kWriteStalled) {
+    reset_socket(socket_);
+  } else {
+    close_socket(socket_);
+  }
+}
+
+void HttpConnection::drain() {
+  if (door_ == Door::kAdmin) return;
+  is_draining_ = true;
+  is_keep_alive_ = false;
+  if (is_idle_) close_socket(socket_);
+}
+
+void HttpConnection::abort() {
+  is_waiting_ = false;
+  reset_socket(socket_);
+  bell_.ring();
+}
+
+}  // namespace
+
+void start_http_connection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door) {
+  const auto executor = socket.get_executor();
+  auto connection = std::make_shared<HttpConnection>(net, sweeper, std::move(socket), std::move(pass), door);
+  HttpConnection& running = *connection;
+  asio::co_spawn(executor, running.run(), [connection = std::move(connection), &net](const std::exception_ptr& fault) {
+    if (fault != nullptr) net.metrics.add(Count::kConnectionFault);
+  });
+}
+
+}  // namespace talus::server

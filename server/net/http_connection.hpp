@@ -1,0 +1,22 @@
+// Starts an HTTP connection on an accepted socket. Asio's types stay out of most of the room's sources.
+#pragma once
+
+#include "server/net/connection_census.hpp"
+#include "server/net/net_context.hpp"
+#include "server/net/routes.hpp"
+#include "server/net/socket.hpp"
+#include "server/net/sweeper.hpp"
+#include "server/schedule/gate.hpp"
+
+namespace talus::server {
+
+/// What a connection holds as long as it lives, whatever it turns into.
+struct ConnectionPass {
+  Gate::Pass gate;
+  ConnectionCensus::Place place;
+};
+
+/// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `socket`.
+void start_http_connection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door);
+
+}  // namespace talus::server

@@ -1,0 +1,74 @@
+// One HTTP/1.1 request head: found in the bytes of a connection, then parsed. Pure; views point into those bytes.
+//
+// http_parser knows the grammar but forgives what smuggling lives on: bare line feeds, folded lines, space before a
+// colon, several hosts, lengths that disagree. All of these are refused here.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string_view>
+
+#include "server/net/limits.hpp"
+
+namespace talus::server {
+
+/// Why a request cannot be served at all. The connection closes after the answer: where the next request would start
+/// is not known.
+struct HttpFault {
+  int status = 400;
+  std::string_view code;     ///< for programs
+  std::string_view message;  ///< for people
+};
+
+/// Finds the end of a head in bytes that come in pieces, each byte looked at once.
+class HeadScanner {
+ public:
+  explicit HeadScanner(const NetLimits& limits) : limits_(&limits) {}
+
+  /// `bytes` is everything from the first byte of the head on; what an earlier call has seen is not scanned again.
+  /// The length of the head with its empty line, or nothing when it is not complete.
+  std::expected<std::optional<std::size_t>, HttpFault> scan(std::string_view bytes);
+  void reset() { *this = HeadScanner(*limits_); }
+
+ private:
+  const NetLimits* limits_;
+  std::size_t scanned_ = 0;
+  std::size_t line_start_ = 0;
+  std::size_t request_line_end_ = 0;  ///< 0 while within the request line
+  std::size_t fields_ = 0;
+};
+
+enum class HttpMethod : std::uint8_t { kGet, kHead, kOptions, kOther };
+
+struct HttpField {
+  std::string_view name;
+  std::string_view value;
+};
+
+struct HttpRequest {
+  static constexpr std::size_t kFieldsMax = 64;
+
+  HttpMethod method = HttpMethod::kOther;
+  std::string_view path;   ///< from the first slash, without query, as sent
+  std::string_view query;  ///< after '?', as sent
+  bool is_keep_alive = false;
+  bool is_http_1_0 = false;
+  bool has_body = false;  ///< a length above zero, or a transfer coding
+  std::array<HttpField, kFieldsMax> fields;
+  std::size_t field_count = 0;
+
+  /// The value of the first field of that name, letters in any case.
+  std::optional<std::string_view> field(std::string_view name) const;
+  /// Whether a comma-separated list field holds `token`, letters in any case.
+  bool lists(std::string_view name, std::string_view token) const;
+};
+
+bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+/// `head` is what HeadScanner found.
+std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits);
+
+}  // namespace talus::server

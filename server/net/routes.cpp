@@ -1,0 +1,247 @@
+#include "server/net/routes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "core/grid/chunk_key.hpp"
+#include "server/net/url_text.hpp"
+#include "server/world/place_query.hpp"
+
+namespace talus::server {
+
+namespace {
+
+constexpr std::size_t kSegmentsMax = 12;
+using Segments = std::span<const std::string_view>;
+
+constexpr std::string_view kAllowReads = "Allow: GET, HEAD, OPTIONS\r\n";
+constexpr std::string_view kPreflight =
+    "Allow: GET, HEAD, OPTIONS\r\nAccess-Control-Allow-Methods: GET, HEAD, OPTIONS\r\n"
+    "Access-Control-Allow-Headers: If-None-Match, Content-Type\r\nAccess-Control-Max-Age: 86400\r\n";
+
+AnswerRoute bad_request(std::string_view code, std::string_view message) {
+  return {error_answer(400, code, message)};
+}
+
+AnswerRoute not_found(std::string_view code, std::string_view message) {
+  return {error_answer(404, code, message)};
+}
+
+AnswerRoute text_answer(int status, std::string_view text) {
+  HttpAnswer answer;
+  answer.status = status;
+  answer.content_type = "text/plain; charset=utf-8";
+  answer.cache_control = "no-store";
+  answer.text = text;
+  return {std::move(answer)};
+}
+
+AnswerRoute cacheable_json(const HttpRequest& request, const std::string& body, const std::string& etag) {
+  HttpAnswer answer;
+  if (names_etag(request.field("if-none-match").value_or(""), etag)) {
+    answer.status = 304;
+  } else {
+    answer = json_answer(body);
+  }
+  answer.etag = etag;
+  answer.cache_control = kNoCache;
+  return {std::move(answer)};
+}
+
+/// Three numbers of `origin=`, each within what a chunk's corner can be.
+std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out) {
+  constexpr double kOriginMax = 1.0e12;
+  const QueryValue value = query_value(query, "origin");
+  if (value.state == QueryState::kAbsent) return std::nullopt;
+  const auto numbers = decimal_numbers(value.value, 3);
+  const auto inside = [](double v) { return std::abs(v) <= kOriginMax; };
+  if (value.state != QueryState::kPresent || !numbers || !std::all_of(numbers->begin(), numbers->end(), inside)) {
+    return bad_request("bad_origin", "origin: expected x,y,z in metres, each within +-1e12");
+  }
+  out = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  return std::nullopt;
+}
+
+/// lod, x, y, z, where the last also carries the format.
+Route chunk_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
+  constexpr std::array<std::string_view, 4> kNames{"lod", "x", "y", "z"};
+  if (parts.size() != kNames.size()) {
+    return bad_request("bad_chunk", "chunk: expected chunks/{lod}/{x}/{y}/{z} and .drc or .glb");
+  }
+  PayloadName name;
+  name.world = static_cast<std::uint32_t>(world);
+  std::string_view z = parts[3];
+  if (z.ends_with(".drc")) {
+    name.format = PayloadFormat::kDraco;
+  } else if (z.ends_with(".glb")) {
+    name.format = PayloadFormat::kGlb;
+  } else {
+    return bad_request("bad_format", "format: a chunk ends in .drc or .glb");
+  }
+  z.remove_suffix(4);
+  const std::array<std::string_view, 4> texts{parts[0], parts[1], parts[2], z};
+  const std::array<std::int32_t*, 4> values{&name.key.lod, &name.key.x, &name.key.y, &name.key.z};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const std::int32_t low = i == 0 ? 0 : -kChunkLimit;
+    const std::int32_t high = i == 0 ? kLodMax : kChunkLimit;
+    const auto value = whole_number(texts[i]);
+    if (!value || *value < low || *value > high) {
+      return bad_request(fmt::format("bad_{}", kNames[i]),
+                         fmt::format("{}: expected a whole number from {} to {}", kNames[i], low, high));
+    }
+    *values[i] = *value;
+  }
+  if (name.format == PayloadFormat::kGlb) {
+    if (auto refused = read_origin(request.query, name.origin)) return std::move(*refused);
+  }
+  const std::string& etag = context.worlds[world]->etag(name.format);
+  if (names_etag(request.field("if-none-match").value_or(""), etag)) {
+    HttpAnswer answer;
+    answer.status = 304;
+    answer.etag = etag;
+    answer.cache_control = kImmutable;
+    return AnswerRoute{std::move(answer)};
+  }
+  return ChunkRoute{name};
+}
+
+std::optional<glm::dvec2> read_place(std::string_view text, const WorldFunction& world) {
+  const auto numbers = decimal_numbers(text, 2);
+  const double limit = place_limit_m(world);
+  if (!numbers || std::abs((*numbers)[0]) > limit || std::abs((*numbers)[1]) > limit) return std::nullopt;
+  return glm::dvec2{(*numbers)[0], (*numbers)[1]};
+}
+
+Route spawn_route(const HttpRequest& request, const RouteContext& context, std::size_t world) {
+  const WorldFunction& function = context.worlds[world]->function();
+  const QueryValue value = query_value(request.query, "near");
+  if (value.state == QueryState::kAbsent) return SpawnRoute{world, {}};
+  const auto place = read_place(value.value, function);
+  if (value.state != QueryState::kPresent || !place) {
+    return bad_request("bad_near",
+                       fmt::format("near: expected x,z in metres, each within +-{}", place_limit_m(function)));
+  }
+  return SpawnRoute{world, *place};
+}
+
+Route points_route(const HttpRequest& request, const RouteContext& context, std::size_t world) {
+  const WorldFunction& function = context.worlds[world]->function();
+  const QueryValue value = query_value(request.query, "xz");
+  PointsRoute route{world, {}};
+  std::string_view rest = value.value;
+  bool is_good = value.state == QueryState::kPresent;
+  while (is_good) {
+    const std::size_t end = rest.find(';');
+    const auto place = read_place(rest.substr(0, end), function);
+    is_good = place && route.places_m.size() < kPointsMax;
+    if (is_good) route.places_m.push_back(*place);
+    if (end == std::string_view::npos) break;
+    rest.remove_prefix(end + 1);
+  }
+  if (!is_good) {
+    return bad_request("bad_xz", fmt::format("xz: expected 1 to {} places as x,z;x,z in metres, each within +-{}",
+                                             kPointsMax, place_limit_m(function)));
+  }
+  return route;
+}
+
+Route world_route(const HttpRequest& request, const RouteContext& context, Segments parts) {
+  const std::size_t world = world_index(context.worlds, parts[0]);
+  if (world == context.worlds.size()) return not_found("unknown_world", "there is no world of that name here");
+  if (parts.size() == 1) {
+    const World& found = *context.worlds[world];
+    return cacheable_json(request, found.manifest_json(), found.manifest_etag());
+  }
+  if (parts[1] == "chunks") return chunk_route(request, context, world, parts.subspan(2));
+  if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);
+  if (parts.size() == 2 && parts[1] == "points") return points_route(request, context, world);
+  if (parts.size() == 2 && parts[1] == "stream") return StreamRoute{world};
+  return not_found("unknown_route", "there is nothing of that name in a world");
+}
+
+AnswerRoute file_route(const HttpRequest& request, const RouteContext& context) {
+  const StaticFileRef file = context.files.find(request.path);
+  if (file == nullptr) {
+    if (request.path == "/" && context.files.size() == 0) {
+      return not_found("no_viewer", "this server was started without --viewer; the doors are below /v1/worlds");
+    }
+    return not_found("unknown_route", "there is nothing of that name here");
+  }
+  HttpAnswer answer;
+  answer.etag = file->etag;
+  answer.cache_control = file->is_immutable ? kImmutable : kNoCache;
+  if (names_etag(request.field("if-none-match").value_or(""), file->etag)) {
+    answer.status = 304;
+  } else {
+    answer.content_type = file->content_type;
+    answer.file = file;
+  }
+  return {std::move(answer)};
+}
+
+/// What is there, whatever the method.
+Route resolve_path(const HttpRequest& request, const RouteContext& context) {
+  if (request.path == "/healthz") return text_answer(200, "ok\n");
+  if (request.path == "/readyz") {
+    return context.is_ready ? text_answer(200, "ok\n") : text_answer(503, "not ready\n");
+  }
+  if (context.door == Door::kAdmin) {
+    if (request.path == "/metrics") return MetricsRoute{};
+    return not_found("unknown_route", "there is nothing of that name here");
+  }
+  std::array<std::string_view, kSegmentsMax> parts;
+  const auto count = split_path(request.path, parts);
+  const bool is_v1 = parts[1] == "v1";  // parts[0] is empty: a path starts with a slash
+  if (!is_v1) return file_route(request, context);
+  if (count && *count >= 3 && parts[2] == "worlds") {
+    if (*count == 3) return AnswerRoute{json_answer(context.worlds_json)};
+    return world_route(request, context, Segments(parts).subspan(3, *count - 3));
+  }
+  if (!count && parts[2] == "worlds" && parts[4] == "chunks") {
+    return bad_request("bad_chunk", "chunk: expected chunks/{lod}/{x}/{y}/{z} and .drc or .glb");
+  }
+  return not_found("unknown_route", "there is nothing of that name here");
+}
+
+}  // namespace
+
+bool names_etag(std::string_view if_none_match, std::string_view etag) {
+  while (!if_none_match.empty()) {
+    const std::size_t comma = if_none_match.find(',');
+    std::string_view one = if_none_match.substr(0, comma);
+    if_none_match = comma == std::string_view::npos ? std::string_view{} : if_none_match.substr(comma + 1);
+    while (one.starts_with(' ') || one.starts_with('\t')) one.remove_prefix(1);
+    while (one.ends_with(' ') || one.ends_with('\t')) one.remove_suffix(1);
+    if (one.starts_with("W/")) one.remove_prefix(2);
+    if (one == etag || one == "*") return true;
+  }
+  return false;
+}
+
+Route resolve(const HttpRequest& request, const RouteContext& context) {
+  if (request.path.empty()) {  // OPTIONS *
+    HttpAnswer answer;
+    answer.status = 204;
+    answer.fields = kPreflight;
+    return AnswerRoute{std::move(answer)};
+  }
+  Route route = resolve_path(request, context);
+  const auto* answered = std::get_if<AnswerRoute>(&route);
+  if (answered != nullptr && answered->answer.status == 404) return route;
+  if (request.method == HttpMethod::kOptions) {
+    HttpAnswer answer;
+    answer.status = 204;
+    answer.fields = kPreflight;
+    return AnswerRoute{std::move(answer)};
+  }
+  if (request.method == HttpMethod::kOther) {
+    return AnswerRoute{error_answer(405, "method_not_allowed", "this route is only read", kAllowReads)};
+  }
+  if (request.has_body) return bad_request("unexpected_body", "body: this route takes none");
+  return route;
+}
+
+}  // namespace talus::server

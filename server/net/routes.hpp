@@ -1,0 +1,61 @@
+// From a request to what has to be done for it. Pure: every refusal that needs no work is decided here, in one place.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "server/cache/payload.hpp"
+#include "server/net/http_answer.hpp"
+#include "server/net/http_request.hpp"
+#include "server/net/static_files.hpp"
+#include "server/world/world.hpp"
+
+namespace talus::server {
+
+/// Answer at once.
+struct AnswerRoute {
+  HttpAnswer answer;
+};
+/// Answer with the payload, cacheable for ever.
+struct ChunkRoute {
+  PayloadName name;
+};
+/// Ask the pool where one can stand.
+struct SpawnRoute {
+  std::size_t world = 0;
+  glm::dvec2 near_m{};
+};
+/// Ask the pool what the ground is.
+struct PointsRoute {
+  std::size_t world = 0;
+  std::vector<glm::dvec2> places_m;
+};
+/// Become a stream of this world.
+struct StreamRoute {
+  std::size_t world = 0;
+};
+/// Read the metrics; admin door only.
+struct MetricsRoute {};
+
+using Route = std::variant<AnswerRoute, ChunkRoute, SpawnRoute, PointsRoute, StreamRoute, MetricsRoute>;
+
+enum class Door : std::uint8_t { kPublic, kAdmin };
+
+struct RouteContext {
+  const Worlds& worlds;
+  const StaticFiles& files;
+  const std::string& worlds_json;
+  Door door = Door::kPublic;
+  bool is_ready = true;  ///< false while starting and draining
+};
+
+Route resolve(const HttpRequest& request, const RouteContext& context);
+
+/// Whether an If-None-Match value names `etag` (weak comparison, lists and `*`).
+bool names_etag(std::string_view if_none_match, std::string_view etag);
+
+}  // namespace talus::server

@@ -1,0 +1,275 @@
+#include "server/net/server.hpp"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <asio/executor_work_guard.hpp>
+#include <asio/ip/address.hpp>
+#include <asio/signal_set.hpp>
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <future>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "protocol/limits.hpp"
+#include "server/net/connection_census.hpp"
+#include "server/net/http_connection.hpp"
+#include "server/net/socket.hpp"
+#include "server/net/stream_session.hpp"
+#include "server/net/sweeper.hpp"
+#include "server/net/url_text.hpp"
+#include "server/observe/log.hpp"
+
+namespace talus::server {
+
+namespace {
+
+using Executor = asio::io_context::executor_type;
+
+constexpr std::string_view kFull =
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nContent-Length: 63\r\nRetry-After: 5\r\n"
+    "Connection: close\r\n\r\n{\"error\":\"busy\",\"message\":\"too many connections: come again\"}\r\n";
+
+PeerAddress address_of(const asio::ip::address& address) {
+  if (!address.is_v6()) return asio::ip::make_address_v6(asio::ip::v4_mapped, address.to_v4()).to_bytes();
+  PeerAddress out = address.to_v6().to_bytes();
+  if (!address.to_v6().is_v4_mapped()) std::fill(out.begin() + 8, out.end(), static_cast<unsigned char>(0));
+  return out;
+}
+
+struct IoThread {
+  explicit IoThread(const Clock& clock) : sweeper(context, clock), work(context.get_executor()) {}
+
+  asio::io_context context{1};
+  Sweeper sweeper;
+  asio::executor_work_guard<Executor> work;
+  std::thread thread;
+};
+
+struct Listener {
+  Listener(Executor executor, Listen listen) : acceptor(executor), kind(listen) {}
+  Acceptor acceptor;
+  Listen kind;
+};
+
+/// A descriptor kept for the day when there are none: given up to take a connection in, tell it so and end it.
+class SpareDescriptor {
+ public:
+  SpareDescriptor() { reopen(); }
+  ~SpareDescriptor() { ::close(descriptor_); }
+  SpareDescriptor(const SpareDescriptor&) = delete;
+  SpareDescriptor& operator=(const SpareDescriptor&) = delete;
+
+  void refuse_one(int listening) {
+    ::close(descriptor_);
+    if (const int taken = ::accept4(listening, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC); taken >= 0) {
+      ::send(taken, kFull.data(), kFull.size(), MSG_NOSIGNAL);
+      ::close(taken);
+    }
+    reopen();
+  }
+
+ private:
+  void reopen() { descriptor_ = ::open("/dev/null", O_RDONLY | O_CLOEXEC); }
+  int descriptor_ = -1;
+};
+
+}  // namespace
+
+struct NetServer::Threads {
+  Threads(NetContext& context, std::size_t count)
+      : net(context), census(context.limits.connections, context.limits.connections_per_address) {
+    for (std::size_t i = 0; i < count; ++i) io.push_back(std::make_unique<IoThread>(context.clock));
+  }
+
+  Executor front() { return io.front()->context.get_executor(); }
+  Awaitable<void> accept_loop(Listener* listener);
+  void welcome(Listen kind, Socket socket, IoThread& target);
+  void wait_for_signal();
+  void each_sweeper(void (Sweeper::*act)());
+  void close_listeners(bool is_admin);
+
+  NetContext& net;
+  ConnectionCensus census;
+  SpareDescriptor spare;
+  std::vector<std::unique_ptr<IoThread>> io;
+  std::vector<std::unique_ptr<Listener>> listeners;
+  std::optional<asio::signal_set> signals;
+  std::function<void()> on_signal;
+  std::size_t next = 0;
+  bool is_running = false;
+};
+
+std::expected<Endpoint, std::string> parse_endpoint(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string fault = "expected ADDRESS:PORT, such as 127.0.0.1:8080 or [::1]:0";
+  if (colon == std::string_view::npos) return std::unexpected(fault);
+  const auto port = whole_number(text.substr(colon + 1));
+  std::string_view address = text.substr(0, colon);
+  if (address.starts_with('[') && address.ends_with(']')) address = address.substr(1, address.size() - 2);
+  asio::error_code error;
+  asio::ip::make_address(address, error);
+  if (error || !port || *port < 0 || *port > 65'535) return std::unexpected(fault);
+  return Endpoint{std::string(address), static_cast<std::uint16_t>(*port)};
+}
+
+NetServer::NetServer(NetContext& net, std::size_t threads)
+    : net_(net), threads_(std::make_unique<Threads>(net, threads)) {}
+
+NetServer::~NetServer() {
+  stop(0.0);
+}
+
+std::expected<std::string, std::string> NetServer::listen(Listen kind, const Endpoint& endpoint) {
+  const asio::ip::tcp::endpoint wanted(asio::ip::make_address(endpoint.address), endpoint.port);
+  auto listener = std::make_unique<Listener>(threads_->front(), kind);
+  Acceptor& acceptor = listener->acceptor;
+  asio::error_code error;
+  acceptor.open(wanted.protocol(), error);
+  // Reuses a port whose old connections linger; one that somebody listens on is still an error.
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(wanted, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  const auto name = [](const asio::ip::tcp::endpoint& at) {
+    const std::string address = at.address().to_string();
+    return (at.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(at.port());
+  };
+  if (error) return std::unexpected("cannot listen on " + name(wanted) + ": " + error.message());
+  std::string bound = name(acceptor.local_endpoint());
+  threads_->listeners.push_back(std::move(listener));
+  return bound;
+}
+
+void NetServer::start(std::function<void()> on_signal) {
+  Threads& t = *threads_;
+  t.on_signal = std::move(on_signal);
+  t.signals.emplace(t.front(), SIGINT, SIGTERM);
+  t.wait_for_signal();
+  for (const auto& listener : t.listeners) {
+    asio::co_spawn(t.front(), t.accept_loop(listener.get()), [this](const std::exception_ptr& fault) {
+      if (fault != nullptr) net_.metrics.add(Count::kConnectionFault);
+    });
+  }
+  t.is_running = true;
+  for (const auto& io : t.io) {
+    asio::co_spawn(io->context, io->sweeper.run(), [](const std::exception_ptr&) {});
+    io->thread = std::thread([this, thread = io.get()] {
+      for (;;) {
+        try {
+          thread->context.run();
+          return;
+        } catch (const std::exception& fault) {
+          // A handler outside any connection's own care; the thread serves on.
+          net_.metrics.add(Count::kConnectionFault);
+          log(LogLevel::kError, "network thread fault", {{"fault", std::string_view(fault.what())}});
+        }
+      }
+    });
+  }
+}
+
+void NetServer::stop(double seconds_max) {
+  Threads& t = *threads_;
+  if (!std::exchange(t.is_running, false)) return;
+  std::promise<void> emptied;
+  std::promise<void> admin_emptied;
+  std::future<void> is_empty = emptied.get_future();
+  std::future<void> is_admin_empty = admin_emptied.get_future();
+  asio::post(t.front(), [&t] { t.close_listeners(false); });
+  net_.connections.close([&emptied] { emptied.set_value(); });
+  t.each_sweeper(&Sweeper::drain);
+  const auto wait = std::chrono::duration<double>(seconds_max);
+  if (is_empty.wait_for(wait) != std::future_status::ready) {
+    log(LogLevel::kWarning, "drain ran out of time", {{"connections", std::uint64_t{net_.connections.inside()}}});
+  }
+  asio::post(t.front(), [&t] {
+    t.close_listeners(true);
+    asio::error_code ignored;
+    t.signals->cancel(ignored);
+  });
+  net_.admin_connections.close([&admin_emptied] { admin_emptied.set_value(); });
+  t.each_sweeper(&Sweeper::abort);
+  is_empty.wait();
+  is_admin_empty.wait();
+  t.each_sweeper(&Sweeper::stop);
+  for (const auto& io : t.io) {
+    io->work.reset();
+    io->thread.join();
+  }
+}
+
+void NetServer::Threads::each_sweeper(void (Sweeper::*act)()) {
+  for (const auto& thread : io) {
+    asio::post(thread->context, [&sweeper = thread->sweeper, act] { (sweeper.*act)(); });
+  }
+}
+
+void NetServer::Threads::close_listeners(bool is_admin) {
+  for (const auto& listener : listeners) {
+    asio::error_code ignored;
+    if ((listener->kind == Listen::kAdmin) == is_admin) listener->acceptor.close(ignored);
+  }
+}
+
+void NetServer::Threads::wait_for_signal() {
+  signals->async_wait([this](const asio::error_code& error, int) {
+    if (error) return;
+    on_signal();
+    wait_for_signal();
+  });
+}
+
+Awaitable<void> NetServer::Threads::accept_loop(Listener* listener) {
+  Acceptor& acceptor = listener->acceptor;
+  Timer pause(acceptor.get_executor());
+  while (acceptor.is_open()) {
+    IoThread& target = *io[next++ % io.size()];
+    Socket socket(target.context.get_executor());
+    const auto [error] = co_await acceptor.async_accept(socket, kAwait);
+    if (!error) {
+      welcome(listener->kind, std::move(socket), target);
+    } else if (error == asio::error::no_descriptors) {
+      net.metrics.add(Count::kConnectionsRefusedDescriptors);
+      spare.refuse_one(acceptor.native_handle());
+    } else if (acceptor.is_open() && error != asio::error::connection_aborted) {
+      // Out of some other resource: trying again at once would only burn the thread.
+      pause.expires_after(std::chrono::milliseconds(50));
+      co_await pause.async_wait(kAwait);
+    }
+  }
+}
+
+void NetServer::Threads::welcome(Listen kind, Socket socket, IoThread& target) {
+  asio::error_code error;
+  const auto peer = socket.remote_endpoint(error);
+  if (error) return;  // gone already
+  auto [verdict, place] = census.enter(address_of(peer.address()));
+  if (verdict != ConnectionCensus::Verdict::kWelcome) {
+    net.metrics.add(verdict == ConnectionCensus::Verdict::kTooMany ? Count::kConnectionsRefusedTotal
+                                                                   : Count::kConnectionsRefusedAddress);
+    if (kind != Listen::kTcp) socket.write_some(asio::buffer(kFull), error);
+    return;
+  }
+  ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(), std::move(place)};
+  if (!pass.gate) return;
+  net.metrics.add(Count::kConnectionsAccepted);
+  set_socket_options(socket);
+  asio::post(target.context, [this, kind, &target, socket = std::move(socket), pass = std::move(pass)]() mutable {
+    if (kind == Listen::kTcp) {
+      StreamStart start;
+      start.framing = make_tcp_framing(protocol::kInboundMessageBytesMax);
+      start_stream_session(net, target.sweeper, std::move(socket), std::move(pass), std::move(start));
+    } else {
+      const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;
+      start_http_connection(net, target.sweeper, std::move(socket), std::move(pass), door);
+    }
+  });
+}
+
+}  // namespace talus::server

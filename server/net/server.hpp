@@ -1,0 +1,51 @@
+// The network threads and the listening sockets: start, drain, stop.
+//
+// One io_context a thread, each run by that thread alone, so a connection needs no locks. One acceptor gives its
+// sockets out in turn: streams last for hours, and a hash of addresses (SO_REUSEPORT) would leave threads unevenly
+// loaded for as long; it would also let a second server bind the same port without an error.
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "server/net/net_context.hpp"
+
+namespace talus::server {
+
+/// "127.0.0.1:8080", "[::1]:0"; an address, not a name.
+struct Endpoint {
+  std::string address;
+  std::uint16_t port = 0;
+};
+std::expected<Endpoint, std::string> parse_endpoint(std::string_view text);
+
+enum class Listen : std::uint8_t { kHttp, kTcp, kAdmin };
+
+class NetServer {
+ public:
+  /// `net` must outlive the server. Nothing listens and no thread runs yet.
+  NetServer(NetContext& net, std::size_t threads);
+  /// Stops at once if it was not stopped.
+  ~NetServer();
+  NetServer(const NetServer&) = delete;
+  NetServer& operator=(const NetServer&) = delete;
+
+  /// Binds, and says the address it got ("127.0.0.1:43210") or why not ("127.0.0.1:80: Permission denied").
+  std::expected<std::string, std::string> listen(Listen kind, const Endpoint& endpoint);
+  /// Runs the threads. A signal of SIGINT or SIGTERM calls `on_signal`, on a network thread.
+  void start(std::function<void()> on_signal);
+  /// Stops accepting, lets answers and sessions end, after `seconds_max` ends them by force; then joins the threads.
+  /// Not from a network thread.
+  void stop(double seconds_max);
+
+ private:
+  struct Threads;
+  NetContext& net_;
+  std::unique_ptr<Threads> threads_;
+};
+
+}  // namespace talus::server

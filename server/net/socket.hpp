@@ -1,0 +1,52 @@
+// What of Asio the net room uses, spelled once.
+//
+// Errors come back as values. Awaitables are awaited on the thread of their connection only: every connection belongs
+// to one single-threaded io_context for its life, so nothing inside a connection is locked.
+#pragma once
+
+#include <asio/awaitable.hpp>
+#include <asio/buffer.hpp>
+#include <asio/co_spawn.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/post.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/use_awaitable.hpp>
+
+#include <cstddef>
+#include <span>
+
+namespace talus::server {
+
+using Socket = asio::basic_stream_socket<asio::ip::tcp, asio::io_context::executor_type>;
+using Acceptor = asio::basic_socket_acceptor<asio::ip::tcp, asio::io_context::executor_type>;
+using Timer = asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>,
+                                         asio::io_context::executor_type>;
+template <typename T>
+using Awaitable = asio::awaitable<T, asio::io_context::executor_type>;
+
+inline constexpr asio::use_awaitable_t<asio::io_context::executor_type> kAwaitable{};
+/// `const auto [error, n] = co_await socket.async_read_some(buffer, kAwait);`
+inline constexpr auto kAwait = asio::experimental::as_tuple_t<asio::use_awaitable_t<asio::io_context::executor_type>>{};
+
+/// A timer used as a bell: waits for ever, and is rung by cancelling it.
+class Bell {
+ public:
+  explicit Bell(const asio::io_context::executor_type& executor) : timer_(executor, Timer::time_point::max()) {}
+  Awaitable<void> wait() { co_await timer_.async_wait(kAwait); }
+  void ring() { timer_.cancel(); }
+
+ private:
+  Timer timer_;
+};
+
+/// Options of every accepted socket; failures are left to the first read.
+void set_socket_options(Socket& socket);
+/// Ends the connection at once; what was not taken is lost (SO_LINGER 0).
+void reset_socket(Socket& socket);
+void close_socket(Socket& socket);
+/// Whether the peer has closed its side, without reading a byte.
+bool is_peer_gone(Socket& socket);
+
+}  // namespace talus::server

@@ -1,0 +1,22 @@
+// Starts a streaming session on a socket that has become one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "server/net/framing.hpp"
+#include "server/net/http_connection.hpp"
+
+namespace talus::server {
+
+struct StreamStart {
+  std::unique_ptr<Framing> framing;
+  std::optional<std::size_t> world;  ///< named by the URL; else the hello names it
+  std::vector<std::byte> received;   ///< bytes behind the handshake
+};
+
+/// On the thread of `sweeper`, which is that of `socket`.
+void start_stream_session(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, StreamStart start);
+
+}  // namespace talus::server

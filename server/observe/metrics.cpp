@@ -1,0 +1,118 @@
+#include "server/observe/metrics.hpp"
+
+#include <prometheus/metric_family.h>
+#include <prometheus/text_serializer.h>
+
+#include <utility>
+
+namespace talus::server {
+
+namespace {
+
+struct CountInfo {
+  const char* family;
+  const char* label;  ///< name of the one label, or nullptr
+  const char* value;
+  const char* help;
+};
+
+// In the order of Count; entries of one family stand together.
+constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
+    {"talus_http_responses_total", "status", "200", "HTTP answers by status"},
+    {"talus_http_responses_total", "status", "204", ""},
+    {"talus_http_responses_total", "status", "304", ""},
+    {"talus_http_responses_total", "status", "4xx", ""},
+    {"talus_http_responses_total", "status", "5xx", ""},
+    {"talus_http_limit_total", "limit", "malformed", "Requests or connections ended by a limit of the HTTP door"},
+    {"talus_http_limit_total", "limit", "request_line", ""},
+    {"talus_http_limit_total", "limit", "head", ""},
+    {"talus_http_limit_total", "limit", "body", ""},
+    {"talus_http_limit_total", "limit", "head_deadline", ""},
+    {"talus_http_limit_total", "limit", "idle", ""},
+    {"talus_http_limit_total", "limit", "silent", ""},
+    {"talus_http_limit_total", "limit", "write_stalled", ""},
+    {"talus_http_limit_total", "limit", "requests_per_connection", ""},
+    {"talus_connections_accepted_total", nullptr, nullptr, "Connections taken in"},
+    {"talus_connections_refused_total", "limit", "connections", "Connections turned away by a limit"},
+    {"talus_connections_refused_total", "limit", "connections_per_address", ""},
+    {"talus_connections_refused_total", "limit", "descriptors", ""},
+    {"talus_connection_faults_total", nullptr, nullptr, "Connections ended by an unexpected fault of ours"},
+    {"talus_chunk_requests_total", "outcome", "hit", "Requests for chunks by what became of them"},
+    {"talus_chunk_requests_total", "outcome", "built", ""},
+    {"talus_chunk_requests_total", "outcome", "joined", ""},
+    {"talus_chunk_requests_total", "outcome", "shed", ""},
+    {"talus_chunk_requests_total", "outcome", "cancelled", ""},
+    {"talus_chunk_requests_total", "outcome", "failed", ""},
+    {"talus_queries_shed_total", nullptr, nullptr, "Queries of places refused because the pool was full"},
+    {"talus_sessions_opened_total", nullptr, nullptr, "Streaming sessions welcomed"},
+    {"talus_sessions_refused_total", nullptr, nullptr, "Hellos refused"},
+    {"talus_messages_received_total", nullptr, nullptr, "Messages of streaming clients"},
+    {"talus_sessions_ended_total", "reason", "malformed", "Sessions that the server ended"},
+    {"talus_sessions_ended_total", "reason", "too_many_messages", ""},
+    {"talus_sessions_ended_total", "reason", "too_slow", ""},
+    {"talus_sessions_ended_total", "reason", "silent", ""},
+    {"talus_sessions_ended_total", "reason", "draining", ""},
+    {"talus_sessions_ended_total", "reason", "internal", ""},
+    {"talus_chunks_sent_total", nullptr, nullptr, "Chunk messages sent on streams"},
+    {"talus_chunk_bytes_sent_total", nullptr, nullptr, "Bytes of chunk messages sent on streams"},
+    {"talus_send_shed_total", nullptr, nullptr, "Chunks taken back because a send queue was over its soft limit"},
+    {"talus_send_overflow_total", nullptr, nullptr, "Sessions reset because a send queue met its hard limit"},
+    {"talus_credit_waits_total", nullptr, nullptr, "Times a stream stopped because its client's credit was used up"},
+}};
+
+constexpr std::array<const char*, static_cast<std::size_t>(Hop::kEnd)> kHops{
+    "read_loop", "next_message", "decode",       "on_message", "request",
+    "load",      "build_chunk",  "encode_chunk", "publish",    "write_loop"};
+
+prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
+  prometheus::ClientMetric::Histogram out;
+  for (std::size_t i = 0; i < kLatencyBuckets; ++i) {
+    out.sample_count += from.count(i);
+    if (i + 1 < kLatencyBuckets) out.bucket.push_back({out.sample_count, LatencyHistogram::bound_seconds(i)});
+  }
+  out.sample_sum = from.total_seconds();
+  return out;
+}
+
+}  // namespace
+
+void Metrics::gauge(std::string name, std::string help, GaugeReading reading) {
+  const std::lock_guard lock(gauges_mutex_);
+  gauges_.push_back({std::move(name), std::move(help), std::move(reading)});
+}
+
+std::string Metrics::text() const {
+  std::vector<prometheus::MetricFamily> families;
+  for (std::size_t i = 0; i < kCounts.size(); ++i) {
+    const CountInfo& info = kCounts[i];
+    if (families.empty() || families.back().name != info.family) {
+      families.push_back({info.family, info.help, prometheus::MetricType::Counter, {}});
+    }
+    prometheus::ClientMetric& metric = families.back().metric.emplace_back();
+    if (info.label != nullptr) metric.label.push_back({info.label, info.value});
+    metric.counter.value = static_cast<double>(value(static_cast<Count>(i)));
+  }
+  prometheus::MetricFamily& hops = families.emplace_back();
+  hops.name = "talus_hop_seconds";
+  hops.help = "Time spent in each station of the data walk";
+  hops.type = prometheus::MetricType::Histogram;
+  for (std::size_t i = 0; i < kHops.size(); ++i) {
+    prometheus::ClientMetric& metric = hops.metric.emplace_back();
+    metric.label.push_back({"hop", kHops[i]});
+    metric.histogram = snapshot(hops_[i]);
+  }
+  {
+    const std::lock_guard lock(gauges_mutex_);
+    for (const Gauge& gauge : gauges_) {
+      prometheus::MetricFamily& family = families.emplace_back();
+      family.name = gauge.name;
+      family.help = gauge.help;
+      family.type = prometheus::MetricType::Gauge;
+      family.metric.emplace_back().gauge.value = gauge.reading();
+    }
+  }
+  const prometheus::TextSerializer serializer;
+  return serializer.Serialize(families);
+}
+
+}  // namespace talus::server

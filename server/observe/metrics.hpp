@@ -1,0 +1,111 @@
+// Everything the server counts, in one table: a limit without a number here cannot be seen to work.
+//
+// Counters and histograms are fixed arrays of atomics, so counting costs one relaxed add and no look-up. Gauges are
+// functions, asked when the metrics are read. Any thread.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/observe/latency_histogram.hpp"
+
+namespace talus::server {
+
+/// The stations of the data walk, in its order.
+enum class Hop : std::uint8_t {
+  kReadLoop,
+  kNextMessage,
+  kDecode,
+  kOnMessage,
+  kRequest,
+  kLoad,
+  kBuildChunk,
+  kEncodeChunk,
+  kPublish,
+  kWriteLoop,
+  kEnd
+};
+
+enum class Count : std::uint8_t {
+  kHttpOk,
+  kHttpNoContent,
+  kHttpNotModified,
+  kHttpClientError,
+  kHttpServerError,
+  kBadRequest,
+  kUriTooLong,
+  kHeadTooLarge,
+  kBodyTooLarge,
+  kHeadTimeout,
+  kIdleTimeout,
+  kSilentTimeout,
+  kWriteStalled,
+  kRequestsExhausted,
+  kConnectionsAccepted,
+  kConnectionsRefusedTotal,
+  kConnectionsRefusedAddress,
+  kConnectionsRefusedDescriptors,
+  kConnectionFault,
+  kChunkHit,
+  kChunkBuilt,
+  kChunkJoined,
+  kChunkShed,
+  kChunkCancelled,
+  kChunkFailed,
+  kQueryShed,
+  kSessionsOpened,
+  kSessionsRefused,
+  kMessagesReceived,
+  kByeMalformed,
+  kByeTooManyMessages,
+  kByeTooSlow,
+  kByeSilent,
+  kByeDraining,
+  kByeInternal,
+  kChunksSent,
+  kChunkBytesSent,
+  kSendShed,
+  kSendOverflow,
+  kCreditWaits,
+  kEnd
+};
+
+using GaugeReading = std::move_only_function<double() const>;
+
+class Metrics {
+ public:
+  void add(Count count, std::uint64_t by = 1) {
+    counts_[static_cast<std::size_t>(count)].fetch_add(by, std::memory_order_relaxed);
+  }
+  std::uint64_t value(Count count) const {
+    return counts_[static_cast<std::size_t>(count)].load(std::memory_order_relaxed);
+  }
+  void record(Hop hop, std::chrono::nanoseconds took) { hops_[static_cast<std::size_t>(hop)].record(took); }
+  const LatencyHistogram& hop(Hop hop) const { return hops_[static_cast<std::size_t>(hop)]; }
+
+  /// `reading` is called whenever the metrics are read, on the reader's thread, and must stay callable until then.
+  void gauge(std::string name, std::string help, GaugeReading reading);
+
+  /// Prometheus' text format, version 0.0.4.
+  std::string text() const;
+
+ private:
+  struct Gauge {
+    std::string name;
+    std::string help;
+    GaugeReading reading;
+  };
+  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kEnd)> counts_{};
+  std::array<LatencyHistogram, static_cast<std::size_t>(Hop::kEnd)> hops_;
+  mutable std::mutex gauges_mutex_;
+  std::vector<Gauge> gauges_;
+};
+
+}  // namespace talus::server

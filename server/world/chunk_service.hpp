@@ -1,0 +1,108 @@
+// Chunks for every door, one way: from memory, from the job somebody else has started, or from a job of one's own.
+//
+// Single flight: however many ask for an absent chunk, one job makes it. Every asker holds a ticket; when the last one
+// drops its ticket nobody wants the chunk, and the job is taken back or, if it runs, told to stop. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <mutex>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "server/cache/memory_cache.hpp"
+#include "server/observe/metrics.hpp"
+#include "server/schedule/clock.hpp"
+#include "server/schedule/job_pool.hpp"
+#include "server/world/chunk_builder.hpp"
+
+namespace talus::server {
+
+enum class ChunkError : std::uint8_t {
+  kBusy,   ///< the lane is full: come again
+  kFailed  ///< the chunk could not be made
+};
+
+using ChunkResult = std::expected<PayloadRef, ChunkError>;
+
+class ChunkService {
+ public:
+  /// Called once, on a pool thread; must be quick and must not throw: post and return. May still be called after its
+  /// ticket is gone, if the answer was under way.
+  using Done = std::move_only_function<void(ChunkResult)>;
+
+  /// One asker's interest in a chunk that is being made. Dropping it withdraws. Must not outlive the service.
+  class Ticket {
+   public:
+    Ticket() = default;
+    Ticket(Ticket&& other) noexcept;
+    Ticket& operator=(Ticket&& other) noexcept;
+    Ticket(const Ticket&) = delete;
+    Ticket& operator=(const Ticket&) = delete;
+    ~Ticket() { drop(); }
+
+    /// Smaller is sooner; a job is as urgent as its most urgent asker.
+    void set_urgency(double urgency);
+    void drop();
+
+   private:
+    friend class ChunkService;
+    Ticket(ChunkService* service, const PayloadName& name, std::uint64_t id)
+        : service_(service), name_(name), id_(id) {}
+
+    ChunkService* service_ = nullptr;
+    PayloadName name_;
+    std::uint64_t id_ = 0;
+  };
+
+  /// The payload itself, a ticket for it, or why there is neither. `done` is called only for a ticket.
+  using Answer = std::variant<PayloadRef, Ticket, ChunkError>;
+
+  /// All must outlive the service; the pool must be stopped before the service ends.
+  ChunkService(MemoryCache& cache, JobPool& pool, ChunkBuilder& builder, const Clock& clock, Metrics& metrics);
+  ChunkService(const ChunkService&) = delete;
+  ChunkService& operator=(const ChunkService&) = delete;
+
+  /// Requires is_valid(name.key) and a world that exists.
+  Answer request(const PayloadName& name, Lane lane, double urgency, Done done);
+
+  /// Chunks being made or waiting to be.
+  std::size_t flights() const;
+
+ private:
+  struct Waiter {
+    std::uint64_t id = 0;
+    double urgency = 0.0;
+    Done done;
+  };
+  struct Flight {
+    JobPool::JobRef job;
+    std::vector<Waiter> waiters;
+  };
+
+  PayloadRef load(const PayloadName& name);
+  Answer join_or_start(const PayloadName& name, Lane lane, double urgency, Done done);
+  void run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
+  void publish(const PayloadName& name, std::uint64_t flight_id, ChunkResult result);
+  void set_urgency(const PayloadName& name, std::uint64_t id, double urgency);
+  void drop(const PayloadName& name, std::uint64_t id);
+
+  MemoryCache& cache_;
+  JobPool& pool_;
+  ChunkBuilder& builder_;
+  const Clock& clock_;
+  Metrics& metrics_;
+
+  mutable std::mutex mutex_;
+  std::uint64_t last_id_ = 0;
+  struct Entry {
+    std::uint64_t id = 0;  ///< a flight that was given up and begun anew has another
+    Flight flight;
+  };
+  std::unordered_map<PayloadName, Entry, PayloadNameHash> flights_;
+};
+
+}  // namespace talus::server

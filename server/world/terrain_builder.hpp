@@ -1,0 +1,34 @@
+// The builder of the real server: evaluates the world, extracts, encodes.
+#pragma once
+
+#include <vector>
+
+#include "core/mesh/build_chunk.hpp"
+#include "server/observe/metrics.hpp"
+#include "server/schedule/clock.hpp"
+#include "server/world/chunk_builder.hpp"
+#include "server/world/world.hpp"
+
+namespace talus::server {
+
+class TerrainBuilder final : public ChunkBuilder {
+ public:
+  /// All must outlive the builder. `threads` is the size of the pool.
+  TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads);
+
+  std::optional<ChunkPayload> build(const PayloadName& name, std::size_t thread, const CancelToken& token) override;
+
+ private:
+  /// Working memory of one pool thread: after its first surface chunk only the payload itself is allocated.
+  struct alignas(64) Scratch {
+    ChunkScratch build;
+    ChunkMesh mesh;
+  };
+
+  const Worlds& worlds_;
+  const Clock& clock_;
+  Metrics& metrics_;
+  std::vector<Scratch> scratch_;
+};
+
+}  // namespace talus::server

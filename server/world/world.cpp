@@ -1,0 +1,52 @@
+#include "server/world/world.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/manifest_toml.hpp"
+#include "server/observe/json.hpp"
+
+namespace talus::server {
+
+namespace {
+
+/// Raised when the bytes of a format change for one and the same mesh.
+constexpr std::string_view kDracoEdition = "drc1";
+constexpr std::string_view kGlbEdition = "glb1";
+constexpr std::string_view kManifestEdition = "man1";
+/// Edits are not kept yet: every chunk is as its world made it.
+constexpr std::string_view kRevision = "0";
+
+std::string etag_of(std::string_view hash, std::string_view edition) {
+  std::string out = "\"";
+  out.append(hash.substr(0, 32)).append(".").append(kRevision).append(".").append(edition).append("\"");
+  return out;
+}
+
+}  // namespace
+
+World::World(Manifest manifest)
+    : function_(std::move(manifest)),
+      hash_(protocol::world_hash(function_.manifest())),
+      shape_{function_.cells(), function_.voxel_m(), function_.height_range_m()},
+      manifest_json_(protocol::manifest_json(function_.manifest())),
+      etag_draco_(etag_of(hash_, kDracoEdition)),
+      etag_glb_(etag_of(hash_, kGlbEdition)),
+      etag_manifest_(etag_of(hash_, kManifestEdition)) {}
+
+std::size_t world_index(const Worlds& worlds, std::string_view name) {
+  const auto found =
+      std::find_if(worlds.begin(), worlds.end(), [&](const auto& world) { return world->name() == name; });
+  return static_cast<std::size_t>(found - worlds.begin());
+}
+
+std::string worlds_json(const Worlds& worlds) {
+  std::string out = "{\"worlds\":[";
+  for (const auto& world : worlds) {
+    if (out.back() != '[') out += ',';
+    out += "{\"name\":" + json_string(world->name()) + ",\"world_hash\":" + json_string(world->hash()) + "}";
+  }
+  return out + "]}";
+}
+
+}  // namespace talus::server
