@@ -48,7 +48,7 @@ struct Server::Parts {
         pool({worker_threads(settings), settings.cold_queue}),
         builder(worlds, clock, metrics, pool.threads()),
         chunks(cache, pool, builder, clock, metrics),
-        net{worlds, files, settings.limits, clock, chunks, pool, metrics, worlds_json(worlds), {}, {}, {}, {}},
+        net{worlds, files, settings.limits, clock, chunks, pool, metrics, worlds_json(worlds), {}, {}, {}, {}, {}},
         network(net, network_threads(settings)) {}
 
   Settings settings;

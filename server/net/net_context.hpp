@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "server/net/limits.hpp"
@@ -30,6 +31,7 @@ struct NetContext {
   Gate admin_connections;                ///< those of the admin door, which is open until the end
   std::atomic<bool> is_ready{false};     ///< what /readyz says
   std::atomic<std::size_t> sessions{0};  ///< streams open
+  std::atomic<std::uint64_t> session_numbers{0};
 };
 
 inline Duration seconds(double s) {

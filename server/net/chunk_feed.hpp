@@ -1,0 +1,55 @@
+// Between a viewer and its socket: asks the chunk service for what the viewer wants, hands the writer what the client
+// can take. Owner: one session, on its thread; pool threads post to it.
+#pragma once
+
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "server/net/frame_writer.hpp"
+#include "server/net/net_context.hpp"
+#include "server/world/viewer.hpp"
+
+namespace talus::server {
+
+class ChunkFeed {
+ public:
+  /// `net` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way. Counts as a
+  /// session from here to its destruction.
+  ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes,
+            asio::io_context::executor_type executor, std::weak_ptr<void> owner);
+  ~ChunkFeed();
+  ChunkFeed(const ChunkFeed&) = delete;
+  ChunkFeed& operator=(const ChunkFeed&) = delete;
+
+  /// False when the message is not a viewer's.
+  bool on_message(const protocol::Message& message) { return viewer_.on_message(message); }
+  /// Looks at the latest view if it is time, then requests and sends as far as window, credit and queue allow. Cheap
+  /// when there is nothing to do.
+  void advance();
+  /// Nobody wants anything any more.
+  void close();
+
+ private:
+  void refresh();
+  void pump();
+  bool request_next();
+  void on_chunk(const ChunkKey& key, const ChunkResult& result);
+  void offer(const ChunkKey& key, PayloadRef payload);
+  std::size_t window() const;
+
+  NetContext& net_;
+  FrameWriter& writer_;
+  const std::size_t world_;
+  const asio::io_context::executor_type executor_;
+  const std::weak_ptr<void> owner_;
+  Viewer viewer_;
+  std::unordered_map<ChunkKey, ChunkService::Ticket, ChunkKeyHash> tickets_;
+  std::vector<std::pair<ChunkKey, PayloadRef>> ready_;  ///< made, and waiting for credit
+  Instant retry_at_{};
+  Instant refresh_at_{};
+  bool is_closed_ = false;
+};
+
+}  // namespace talus::server

@@ -1,0 +1,86 @@
+#include "server/net/frame_writer.hpp"
+
+#include <span>
+#include <utility>
+
+namespace talus::server {
+
+namespace {
+
+constexpr std::size_t kBatchFrames = 16;
+constexpr std::size_t kBatchBytes = 128 * 1024;
+
+}  // namespace
+
+FrameWriter::FrameWriter(NetContext& net, Socket& socket, const Framing& framing)
+    : net_(net), socket_(socket), framing_(framing), bell_(socket.get_executor()) {}
+
+void FrameWriter::send_chunk(const ChunkKey& key, PayloadRef payload) {
+  const auto bytes = static_cast<std::uint32_t>(payload->bytes.size());
+  OutFrame frame;
+  frame.message = protocol::encode(protocol::ChunkHead{key, 0, payload->kind, bytes});
+  frame.head = framing_.message_head(frame.message.size() + bytes);
+  if (bytes != 0) frame.payload = std::move(payload);
+  net_.metrics.add(Count::kChunksSent);
+  net_.metrics.add(Count::kChunkBytesSent, frame.message.size() + bytes);
+  queue_.push_bulk(std::move(frame));
+  bell_.ring();
+}
+
+OutFrame FrameWriter::frame_of(const protocol::Message& message) const {
+  OutFrame frame;
+  frame.message = protocol::encode(message);
+  frame.head = framing_.message_head(frame.message.size());
+  return frame;
+}
+
+void FrameWriter::send_control(const protocol::Message& message) {
+  queue_.push_control(frame_of(message));
+  bell_.ring();
+}
+
+void FrameWriter::send_bulk(const protocol::Message& message) {
+  queue_.push_bulk(frame_of(message));
+  bell_.ring();
+}
+
+void FrameWriter::push_control(std::vector<std::byte> bytes_of_frame) {
+  if (bytes_of_frame.empty()) return;
+  OutFrame frame;
+  frame.message = std::move(bytes_of_frame);
+  queue_.push_control(std::move(frame));
+  bell_.ring();
+}
+
+Awaitable<bool> FrameWriter::write_batch() {
+  const Instant start = net_.clock.now();
+  queue_.pop_batch(kBatchFrames, kBatchBytes, batch_);
+  buffers_.clear();
+  for (const OutFrame& frame : batch_) {
+    buffers_.emplace_back(frame.head.bytes.data(), frame.head.size);
+    buffers_.push_back(asio::buffer(frame.message));
+    if (frame.payload != nullptr) buffers_.push_back(asio::buffer(frame.payload->bytes));
+  }
+  is_writing_ = true;
+  progress_at_ = start;
+  for (std::span<asio::const_buffer> left(buffers_); !left.empty();) {
+    asio::error_code error;
+    std::size_t sent = socket_.write_some(left, error);
+    if (error && error != asio::error::would_block) co_return false;
+    if (sent != 0) progress_at_ = net_.clock.now();
+    while (!left.empty() && sent >= left.front().size()) {
+      sent -= left.front().size();
+      left = left.subspan(1);
+    }
+    if (left.empty()) break;
+    left.front() += sent;
+    const auto [wait_error] = co_await socket_.async_wait(Socket::wait_write, kAwait);
+    if (wait_error) co_return false;
+  }
+  is_writing_ = false;
+  batch_.clear();
+  net_.metrics.record(Hop::kWriteLoop, net_.clock.now() - start);
+  co_return true;
+}
+
+}  // namespace talus::server

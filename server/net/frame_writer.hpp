@@ -1,0 +1,54 @@
+// Puts a session's frames onto its socket: two lanes, one gather write for many frames, payloads never copied.
+// Owner: one session, on its thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "protocol/message.hpp"
+#include "server/net/framing.hpp"
+#include "server/net/net_context.hpp"
+#include "server/net/send_queue.hpp"
+#include "server/net/socket.hpp"
+
+namespace talus::server {
+
+class FrameWriter {
+ public:
+  /// All must outlive the writer.
+  FrameWriter(NetContext& net, Socket& socket, const Framing& framing);
+
+  void send_control(const protocol::Message& message);
+  void send_bulk(const protocol::Message& message);
+  void send_chunk(const ChunkKey& key, PayloadRef payload);
+  /// A frame of the framing's own, head and all; nothing when it is empty.
+  void push_control(std::vector<std::byte> frame);
+  void drop_bulk() { queue_.drop_bulk(); }
+
+  bool empty() const { return queue_.empty(); }
+  std::size_t bytes() const { return queue_.bytes(); }
+  std::size_t control_frames() const { return queue_.control_frames(); }
+  /// Whether a write has been waiting for the peer since before `instant`.
+  bool is_stalled_since(Instant instant) const { return is_writing_ && progress_at_ < instant; }
+
+  /// Returns when something was pushed, or `ring` was called.
+  Awaitable<void> wait() { return bell_.wait(); }
+  void ring() { bell_.ring(); }
+  /// Takes the next frames from the queue and writes them whole. False when the socket has failed.
+  Awaitable<bool> write_batch();
+
+ private:
+  OutFrame frame_of(const protocol::Message& message) const;
+
+  NetContext& net_;
+  Socket& socket_;
+  const Framing& framing_;
+  SendQueue queue_;
+  std::vector<OutFrame> batch_;
+  std::vector<asio::const_buffer> buffers_;
+  Bell bell_;
+  Instant progress_at_{};
+  bool is_writing_ = false;
+};
+
+}  // namespace talus::server
