@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/world/material.hpp"
+#include "core/strata/material.hpp"
 
 namespace talus::cli {
 namespace {

@@ -78,9 +78,9 @@ std::size_t ChunkFeed::window() const {
 void ChunkFeed::pump() {
   if (is_closed_) return;
   while (!ready_.empty()) {
-    auto& [key, payload] = ready_.front();
-    if (viewer_.deliver(key, payload->bytes.size()) == Viewer::Delivery::kNoCredit) break;
-    writer_.send_chunk(key, std::move(payload));
+    auto& [key, frame] = ready_.front();
+    if (viewer_.deliver(key, frame.message_bytes()) == Viewer::Delivery::kNoCredit) break;
+    writer_.send_chunk(std::move(frame));
     ready_.erase(ready_.begin());
   }
   const Instant now = net_.clock.now();
@@ -129,14 +129,15 @@ void ChunkFeed::offer(const ChunkKey& key, PayloadRef payload) {
     net_.metrics.add(Count::kSendShed);
     return viewer_.put_back(key);
   }
-  switch (viewer_.deliver(key, payload->bytes.size())) {
+  OutFrame frame = writer_.chunk_frame(key, std::move(payload));
+  switch (viewer_.deliver(key, frame.message_bytes())) {
     case Viewer::Delivery::kSend:
-      return writer_.send_chunk(key, std::move(payload));
+      return writer_.send_chunk(std::move(frame));
     case Viewer::Delivery::kUnwanted:
       return;
     case Viewer::Delivery::kNoCredit:
       if (ready_.empty()) net_.metrics.add(Count::kCreditWaits);
-      ready_.emplace_back(key, std::move(payload));
+      ready_.emplace_back(key, std::move(frame));
       return;
   }
 }

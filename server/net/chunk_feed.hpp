@@ -46,7 +46,7 @@ class ChunkFeed {
   const std::weak_ptr<void> owner_;
   Viewer viewer_;
   std::unordered_map<ChunkKey, ChunkService::Ticket, ChunkKeyHash> tickets_;
-  std::vector<std::pair<ChunkKey, PayloadRef>> ready_;  ///< made, and waiting for credit
+  std::vector<std::pair<ChunkKey, OutFrame>> ready_;  ///< made, and waiting for credit
   Instant retry_at_{};
   Instant refresh_at_{};
   bool is_closed_ = false;

@@ -15,14 +15,18 @@ constexpr std::size_t kBatchBytes = 128 * 1024;
 FrameWriter::FrameWriter(NetContext& net, Socket& socket, const Framing& framing)
     : net_(net), socket_(socket), framing_(framing), bell_(socket.get_executor()) {}
 
-void FrameWriter::send_chunk(const ChunkKey& key, PayloadRef payload) {
+OutFrame FrameWriter::chunk_frame(const ChunkKey& key, PayloadRef payload) const {
   const auto bytes = static_cast<std::uint32_t>(payload->bytes.size());
   OutFrame frame;
   frame.message = protocol::encode(protocol::ChunkHead{key, 0, payload->kind, bytes});
   frame.head = framing_.message_head(frame.message.size() + bytes);
   if (bytes != 0) frame.payload = std::move(payload);
+  return frame;
+}
+
+void FrameWriter::send_chunk(OutFrame frame) {
   net_.metrics.add(Count::kChunksSent);
-  net_.metrics.add(Count::kChunkBytesSent, frame.message.size() + bytes);
+  net_.metrics.add(Count::kChunkBytesSent, frame.message_bytes());
   queue_.push_bulk(std::move(frame));
   bell_.ring();
 }

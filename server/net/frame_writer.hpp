@@ -20,7 +20,9 @@ class FrameWriter {
 
   void send_control(const protocol::Message& message);
   void send_bulk(const protocol::Message& message);
-  void send_chunk(const ChunkKey& key, PayloadRef payload);
+  /// The frame of a chunk, to be sent when its client can take it.
+  OutFrame chunk_frame(const ChunkKey& key, PayloadRef payload) const;
+  void send_chunk(OutFrame frame);
   /// A frame of the framing's own, head and all; nothing when it is empty.
   void push_control(std::vector<std::byte> frame);
   void drop_bulk() { queue_.drop_bulk(); }

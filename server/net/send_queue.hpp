@@ -18,7 +18,9 @@ struct OutFrame {
   std::vector<std::byte> message;
   PayloadRef payload;
 
-  std::size_t bytes() const { return head.size + message.size() + (payload == nullptr ? 0 : payload->bytes.size()); }
+  /// What the client's credit is charged: the message without its framing.
+  std::size_t message_bytes() const { return message.size() + (payload == nullptr ? 0 : payload->bytes.size()); }
+  std::size_t bytes() const { return head.size + message_bytes(); }
 };
 
 class SendQueue {

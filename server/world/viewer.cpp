@@ -135,11 +135,11 @@ void Viewer::put_back(const ChunkKey& key) {
   queue_.insert(place, chunk);
 }
 
-Viewer::Delivery Viewer::deliver(const ChunkKey& key, std::uint64_t payload_bytes) {
+Viewer::Delivery Viewer::deliver(const ChunkKey& key, std::uint64_t message_bytes) {
   const auto found = states_.find(key);
   if (found == states_.end() || found->second.phase != Phase::kInFlight) return Delivery::kUnwanted;
-  if (payload_bytes > credit_bytes_) return Delivery::kNoCredit;
-  credit_bytes_ -= payload_bytes;
+  if (message_bytes > credit_bytes_) return Delivery::kNoCredit;
+  credit_bytes_ -= message_bytes;
   found->second.phase = Phase::kHeld;
   --in_flight_;
   ++chunks_sent_;

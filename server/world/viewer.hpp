@@ -50,7 +50,7 @@ class Viewer {
   enum class Delivery { kSend, kNoCredit, kUnwanted };
   /// A chunk in flight has come. kSend: it counts as held, and its bytes as taken. kNoCredit: nothing changes, ask
   /// again after the next credit. kUnwanted: nobody waits for it.
-  Delivery deliver(const ChunkKey& key, std::uint64_t payload_bytes);
+  Delivery deliver(const ChunkKey& key, std::uint64_t message_bytes);
 
   /// Once after each refresh, when everything wanted has been delivered.
   std::optional<protocol::Idle> take_idle();
