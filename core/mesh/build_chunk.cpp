@@ -140,10 +140,10 @@ ColumnGrid chunk_columns(const WorldFunction& world, const ChunkKey& key) {
   return {corner.x - step, corner.z - step, step, width, width, world.voxel_m()};
 }
 
-ChunkKind kind_by_columns(const WorldFunction& world, const ChunkKey& key, const ColumnBlock& columns) {
+ChunkKind kind_by_heights(const WorldFunction& world, const ChunkKey& key, double low_m, double high_m) {
   const BoxWorld box = box_of(key, world.cells(), world.voxel_m());
-  if (static_cast<double>(columns.height_high_m) <= box.low.y) return ChunkKind::kAir;
-  if (static_cast<double>(columns.height_low_m) > box.high.y) return ChunkKind::kRock;
+  if (high_m <= box.low.y) return ChunkKind::kAir;
+  if (low_m > box.high.y) return ChunkKind::kRock;
   return ChunkKind::kMesh;
 }
 
@@ -179,13 +179,12 @@ ChunkKind mesh_chunk(const WorldFunction& world, const ChunkKey& key, const Dens
 ChunkKind build_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch, ChunkMesh& out) {
   TALUS_CHECK(is_valid(key));
   out.clear();
-  const BoxWorld box = box_of(key, world.cells(), world.voxel_m());
   const glm::dvec2 range = world.height_range_m();
-  if (box.low.y >= range.y) return ChunkKind::kAir;
-  if (box.high.y < range.x) return ChunkKind::kRock;
+  if (const ChunkKind kind = kind_by_heights(world, key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
   world.columns(chunk_columns(world, key), scratch.columns);
-  const ChunkKind kind = kind_by_columns(world, key, scratch.columns);
-  if (kind != ChunkKind::kMesh) return kind;
+  const auto low_m = static_cast<double>(scratch.columns.height_low_m);
+  const auto high_m = static_cast<double>(scratch.columns.height_high_m);
+  if (const ChunkKind kind = kind_by_heights(world, key, low_m, high_m); kind != ChunkKind::kMesh) return kind;
   return mesh_chunk(world, key, sample_chunk(world, key, scratch), scratch, out);
 }
 

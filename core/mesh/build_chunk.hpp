@@ -27,8 +27,10 @@ ChunkKind build_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScra
 /// The stages of build_chunk, for those who time or cache them one by one.
 /// The columns a chunk stands on, with a halo of one column on every side for normals.
 ColumnGrid chunk_columns(const WorldFunction& world, const ChunkKey& key);
-/// What fills a chunk that no surface of `columns` reaches, or kMesh where one may.
-ChunkKind kind_by_columns(const WorldFunction& world, const ChunkKey& key, const ColumnBlock& columns);
+/// What fills a chunk whose columns' surfaces all lie within `low_m`..`high_m` (metres), or kMesh where one may cross
+/// it. A nanosecond; true for any interval that holds those heights: the world's, or one remembered for the chunk's
+/// columns.
+ChunkKind kind_by_heights(const WorldFunction& world, const ChunkKey& key, double low_m, double high_m);
 /// Densities and signs of the part of the chunk that the surface can reach. Returns where the densities lie.
 DensityBox sample_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch);
 /// Vertices and triangles from sampled densities; kAir or kRock when no edge is crossed after all.

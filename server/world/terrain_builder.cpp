@@ -11,6 +11,20 @@ namespace talus::server {
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
     : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads) {}
 
+ChunkKind TerrainBuilder::build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  const glm::dvec2 range = world.height_range_m();
+  if (const ChunkKind kind = kind_by_heights(world, name.key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
+  const Footprint footprint{name.world, name.key.lod, name.key.x, name.key.z};
+  if (const auto known = footprints_.load(footprint)) {
+    const ChunkKind kind =
+        kind_by_heights(world, name.key, static_cast<double>(known->low_m), static_cast<double>(known->high_m));
+    if (kind != ChunkKind::kMesh) return kind;
+  }
+  const ChunkKind kind = build_chunk(world, name.key, scratch.build, scratch.mesh);
+  footprints_.store(footprint, {scratch.build.columns.height_low_m, scratch.build.columns.height_high_m});
+  return kind;
+}
+
 std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::size_t thread,
                                                   const CancelToken& token) {
   if (token.is_cancelled()) return std::nullopt;
@@ -18,7 +32,7 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   Scratch& scratch = scratch_[thread];
 
   const Instant start = clock_.now();
-  const ChunkKind kind = build_chunk(world, name.key, scratch.build, scratch.mesh);
+  const ChunkKind kind = build_mesh(name, world, scratch);
   const Instant built = clock_.now();
   metrics_.record(Hop::kBuildChunk, built - start);
 

@@ -7,6 +7,7 @@
 #include "server/observe/metrics.hpp"
 #include "server/schedule/clock.hpp"
 #include "server/world/chunk_builder.hpp"
+#include "server/world/footprint_memo.hpp"
 #include "server/world/world.hpp"
 
 namespace talus::server {
@@ -25,10 +26,13 @@ class TerrainBuilder final : public ChunkBuilder {
     ChunkMesh mesh;
   };
 
+  ChunkKind build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+
   const Worlds& worlds_;
   const Clock& clock_;
   Metrics& metrics_;
   std::vector<Scratch> scratch_;
+  FootprintMemo footprints_;
 };
 
 }  // namespace talus::server
