@@ -15,9 +15,7 @@ client::StreamHandlers Flight::handlers() {
   client::StreamHandlers out;
   out.on_welcome = [this](const client::WorldInfo&) { log_.welcome_s = seconds(); };
   out.on_view = [this](const protocol::ViewAccepted& accepted) { log_.wanted = accepted.chunks; };
-  out.on_chunk = [this](const protocol::ChunkHead& head, std::span<const std::byte> payload) {
-    on_chunk(head, payload);
-  };
+  out.on_chunk = [this](const client::ArrivedChunk& chunk) { on_chunk(chunk); };
   out.on_leave = [this](const std::vector<ChunkKey>& keys) { log_.leaves += keys.size(); };
   out.on_idle = [this](const protocol::Idle& idle) {
     ++log_.idles;
@@ -43,18 +41,19 @@ bool Flight::is_under_viewer(const ChunkKey& key) const {
          view_.position.z < box.high.z && box.low.y <= view_.position.y;
 }
 
-void Flight::on_chunk(const protocol::ChunkHead& head, std::span<const std::byte> payload) {
+void Flight::on_chunk(const client::ArrivedChunk& chunk) {
+  const protocol::ChunkHead& head = chunk.head;
   if (!log_.first_chunk_s) log_.first_chunk_s = seconds();
   if (head.kind != ChunkKind::kMesh) {
     ++log_.empties;
     return;
   }
   ++log_.meshes;
-  log_.bytes += payload.size();
+  log_.bytes += chunk.payload.size();
   if (!log_.first_ground_s && head.key.lod == 0 && is_under_viewer(head.key)) log_.first_ground_s = seconds();
   if (!decodes_) return;
   const protocol::WorldShape& shape = stream_.info()->shape;
-  const auto mesh = protocol::decode_draco(payload, protocol::mesh_lattice(head.key, shape.cells, shape.voxel_m));
+  const auto mesh = protocol::decode_draco(chunk.payload, protocol::mesh_lattice(head.key, shape.cells, shape.voxel_m));
   if (mesh) {
     log_.triangles += mesh->triangles();
   } else if (!log_.error) {

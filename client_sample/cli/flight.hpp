@@ -48,7 +48,7 @@ class Flight {
 
   client::StreamHandlers handlers();
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
-  void on_chunk(const protocol::ChunkHead& head, std::span<const std::byte> payload);
+  void on_chunk(const client::ArrivedChunk& chunk);
   bool is_under_viewer(const ChunkKey& key) const;
 
   const bool decodes_;

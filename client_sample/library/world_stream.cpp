@@ -76,7 +76,7 @@ class WorldStream::Viewer {
     const Message& message = decoded->message;
     if (const auto* chunk = std::get_if<protocol::ChunkHead>(&message)) {
       if (!info_) return fail({ErrorCode::kProtocol, "a chunk came before the welcome"});
-      if (handlers_.on_chunk) handlers_.on_chunk(*chunk, decoded->payload);
+      if (handlers_.on_chunk) handlers_.on_chunk({*chunk, decoded->payload, bytes.size()});
       if (!options_.gives_credit_itself) give_credit(bytes.size());
     } else if (const auto* leave = std::get_if<protocol::Leave>(&message)) {
       if (handlers_.on_leave) handlers_.on_leave(leave->keys);

@@ -34,11 +34,17 @@ struct StreamOptions {
   std::vector<protocol::HeldChunk> held;            ///< sent right behind the hello
 };
 
+struct ArrivedChunk {
+  protocol::ChunkHead head;
+  std::span<const std::byte>
+      payload;  ///< Draco (protocol/mesh_codec.hpp) for kind mesh, else empty; lives during the call
+  std::uint64_t message_bytes = 0;  ///< what it cost of the credit
+};
+
 struct StreamHandlers {
   std::function<void(const WorldInfo&)> on_welcome;
   std::function<void(const protocol::ViewAccepted&)> on_view;
-  /// `payload` is Draco (protocol/mesh_codec.hpp) for kind mesh, else empty; it lives during the call.
-  std::function<void(const protocol::ChunkHead&, std::span<const std::byte> payload)> on_chunk;
+  std::function<void(const ArrivedChunk&)> on_chunk;
   std::function<void(const std::vector<ChunkKey>&)> on_leave;
   std::function<void(const protocol::Idle&)> on_idle;
   std::function<void(const ClientError&)> on_closed;  ///< once, and nothing after it
@@ -55,7 +61,7 @@ class WorldStream {
   std::uint32_t look(const protocol::View& view);
   /// Explicit keys, nearest first, instead of an interest area; the latest wins.
   void want(std::vector<protocol::HeldChunk> chunks);
-  /// Bytes that can be taken again; only with gives_credit_itself.
+  /// Bytes of messages that have been consumed; only with gives_credit_itself.
   void give_credit(std::uint64_t bytes);
   /// Says bye.
   void close();

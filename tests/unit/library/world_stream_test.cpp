@@ -146,9 +146,10 @@ class WorldStreamTest : public testing::Test {
   void open(StreamOptions options = {}) {
     options.server = server.address();
     StreamHandlers handlers;
-    handlers.on_chunk = [this](const protocol::ChunkHead& head, std::span<const std::byte> payload) {
-      chunks.push_back(head.key);
-      payload_bytes += payload.size();
+    handlers.on_chunk = [this](const ArrivedChunk& chunk) {
+      chunks.push_back(chunk.head.key);
+      payload_bytes += chunk.payload.size();
+      message_bytes += chunk.message_bytes;
     };
     handlers.on_leave = [this](const std::vector<ChunkKey>& keys) { left = keys; };
     handlers.on_idle = [this](const protocol::Idle& message) { idle = message; };
@@ -164,6 +165,7 @@ class WorldStreamTest : public testing::Test {
   std::optional<WorldStream> stream;
   std::vector<ChunkKey> chunks;
   std::size_t payload_bytes = 0;
+  std::size_t message_bytes = 0;
   std::vector<ChunkKey> left;
   std::optional<protocol::Idle> idle;
   std::vector<ClientError> closed;
@@ -204,6 +206,7 @@ TEST_F(WorldStreamTest, HandsOverChunksAndGivesTheirBytesBack) {
   EXPECT_EQ(left, (std::vector<ChunkKey>{{0, 9, 9, 9}}));
   const auto head = protocol::encode(protocol::ChunkHead{{0, 1, 2, 3}, 0, ChunkKind::kMesh, 5000});
   EXPECT_EQ(std::get<protocol::Credit>(server.heard().back()).bytes, head.size() + 5000);
+  EXPECT_EQ(message_bytes, head.size() + 5000);
 }
 
 TEST_F(WorldStreamTest, AnswersPings) {
