@@ -221,6 +221,9 @@ std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const Ne
   if (!report.is_complete || HTTP_PARSER_ERRNO(&parser) != HPE_OK || (taken != head.size() && parser.upgrade == 0)) {
     return std::unexpected(kGrammar);
   }
+  // The parser forgives runs of spaces; what another server sees there may be another target.
+  const std::string_view line = head.substr(0, head.find('\r'));
+  if (std::count(line.begin(), line.end(), ' ') != 2) return std::unexpected(kGrammar);
   if (parser.http_major != 1 || parser.http_minor > 1) return std::unexpected(kVersion);
   request.method = method_of(parser.method);
   request.is_http_1_0 = parser.http_minor == 0;

@@ -8,10 +8,19 @@
 
 namespace talus::server {
 
-TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
-    : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads) {}
+namespace {
 
+/// 256 * 48 KiB = 12 MiB: what all sessions have in the making at once stands on these, and then some.
+constexpr std::size_t kColumnBlocks = 256;
+
+}  // namespace
+
+TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
+    : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
+
+/// What core's build_chunk does, with heights remembered for long and columns for a while.
 ChunkKind TerrainBuilder::build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  scratch.mesh.clear();
   const glm::dvec2 range = world.height_range_m();
   if (const ChunkKind kind = kind_by_heights(world, name.key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
   const Footprint footprint{name.world, name.key.lod, name.key.x, name.key.z};
@@ -20,9 +29,16 @@ ChunkKind TerrainBuilder::build_mesh(const PayloadName& name, const WorldFunctio
         kind_by_heights(world, name.key, static_cast<double>(known->low_m), static_cast<double>(known->high_m));
     if (kind != ChunkKind::kMesh) return kind;
   }
-  const ChunkKind kind = build_chunk(world, name.key, scratch.build, scratch.mesh);
-  footprints_.store(footprint, {scratch.build.columns.height_low_m, scratch.build.columns.height_high_m});
-  return kind;
+  const ColumnName columns{name.world, name.key.lod, name.key.x, name.key.z};
+  if (!columns_.load(columns, scratch.build.columns)) {
+    world.columns(chunk_columns(world, name.key), scratch.build.columns);
+    columns_.store(columns, scratch.build.columns);
+    footprints_.store(footprint, {scratch.build.columns.height_low_m, scratch.build.columns.height_high_m});
+  }
+  const auto low_m = static_cast<double>(scratch.build.columns.height_low_m);
+  const auto high_m = static_cast<double>(scratch.build.columns.height_high_m);
+  if (const ChunkKind kind = kind_by_heights(world, name.key, low_m, high_m); kind != ChunkKind::kMesh) return kind;
+  return mesh_chunk(world, name.key, sample_chunk(world, name.key, scratch.build), scratch.build, scratch.mesh);
 }
 
 std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::size_t thread,

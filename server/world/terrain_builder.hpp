@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/mesh/build_chunk.hpp"
+#include "server/cache/column_memo.hpp"
 #include "server/observe/metrics.hpp"
 #include "server/schedule/clock.hpp"
 #include "server/world/chunk_builder.hpp"
@@ -33,6 +34,7 @@ class TerrainBuilder final : public ChunkBuilder {
   Metrics& metrics_;
   std::vector<Scratch> scratch_;
   FootprintMemo footprints_;
+  ColumnMemo columns_;
 };
 
 }  // namespace talus::server

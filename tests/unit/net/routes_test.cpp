@@ -1,0 +1,162 @@
+#include "server/net/routes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "server/net/url_text.hpp"
+
+namespace talus::server {
+namespace {
+
+class Routes : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    worlds_ = new Worlds;
+    worlds_->push_back(std::make_unique<const World>(Manifest{}));
+  }
+  static void TearDownTestSuite() { delete worlds_; }
+
+  static Route resolve_target(std::string_view path, std::string_view query = {}, HttpMethod method = HttpMethod::kGet,
+                              std::string_view if_none_match = {}, Door door = Door::kPublic) {
+    HttpRequest request;
+    request.method = method;
+    request.path = path;
+    request.query = query;
+    if (!if_none_match.empty()) {
+      request.fields[0] = {"If-None-Match", if_none_match};
+      request.field_count = 1;
+    }
+    static const StaticFiles kFiles;
+    static const std::string kList = "{}";
+    return resolve(request, {*worlds_, kFiles, kList, door, true});
+  }
+
+  static const HttpAnswer* answer_in(const Route& route) {
+    const auto* answered = std::get_if<AnswerRoute>(&route);
+    return answered == nullptr ? nullptr : &answered->answer;
+  }
+
+  static Worlds* worlds_;
+};
+Worlds* Routes::worlds_ = nullptr;
+
+TEST_F(Routes, ReadAChunksKeyAndFormat) {
+  const Route route = resolve_target("/v1/worlds/default/chunks/3/-4/0/1073741823.drc");
+  const auto* chunk = std::get_if<ChunkRoute>(&route);
+  ASSERT_NE(chunk, nullptr);
+  EXPECT_EQ(chunk->name.key, (ChunkKey{3, -4, 0, 1'073'741'823}));
+  EXPECT_EQ(chunk->name.format, PayloadFormat::kDraco);
+  const Route glb = resolve_target("/v1/worlds/default/chunks/0/1/2/3.glb", "origin=1.5,-2e3,0");
+  EXPECT_EQ(std::get<ChunkRoute>(glb).name.origin, glm::dvec3(1.5, -2000.0, 0.0));
+}
+
+TEST_F(Routes, NameTheFieldOfEveryMalformedCoordinate) {
+  for (const std::string_view bad : {"2147483648", "-2147483649", "9007199254740992",
+                                     "1073741824", "1e300",       "1.0",
+                                     "NaN",        "inf",         "",
+                                     "+1",         "01",          "-0",
+                                     "-01",        " 1",          "1 ",
+                                     "0x1",        "１",          "%31",
+                                     "1%00",       "--1",         "-",
+                                     "1_0"}) {
+    const std::string text(bad);
+    const std::vector<std::pair<std::string, std::string>> kPlaces{{"bad_lod", "/" + text + "/0/0/0.drc"},
+                                                                   {"bad_x", "/0/" + text + "/0/0.drc"},
+                                                                   {"bad_y", "/0/0/" + text + "/0.drc"},
+                                                                   {"bad_z", "/0/0/0/" + text + ".glb"}};
+    for (const auto& [code, path] : kPlaces) {
+      const Route route = resolve_target("/v1/worlds/default/chunks" + path);
+      const HttpAnswer* answer = answer_in(route);
+      ASSERT_NE(answer, nullptr) << path;
+      EXPECT_EQ(answer->status, 400) << path;
+      EXPECT_NE(answer->text.find("\"" + code + "\""), std::string::npos) << path << " -> " << answer->text;
+    }
+  }
+}
+
+TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
+  struct Case {
+    std::string_view path;
+    std::string_view query;
+    HttpMethod method;
+    int status;
+  };
+  constexpr std::array<Case, 27> kTable{{
+      {"/healthz", "", HttpMethod::kGet, 200},
+      {"/readyz", "", HttpMethod::kHead, 200},
+      {"/v1/worlds", "", HttpMethod::kGet, 200},
+      {"/v1/worlds/default", "", HttpMethod::kGet, 200},
+      {"/", "", HttpMethod::kGet, 404},
+      {"/nothing", "", HttpMethod::kGet, 404},
+      {"/../../etc/passwd", "", HttpMethod::kGet, 404},
+      {"/v1", "", HttpMethod::kGet, 404},
+      {"/v1/", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/other", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/other/chunks/a/b/c/d", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/nothing", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/chunks", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.obj", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0/0.drc", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.glb", "origin=1,2", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.glb", "origin=1,2,nan", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.glb", "origin=1,2,3&origin=1,2,3", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/13/0/0/0.drc", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/spawn", "near=1e300,0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/points", "xz=0,0;", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOther, 405},
+      {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOptions, 204},
+      {"", "", HttpMethod::kOptions, 204},
+  }};
+  for (const Case& c : kTable) {
+    const Route route = resolve_target(c.path, c.query, c.method);
+    const HttpAnswer* answer = answer_in(route);
+    ASSERT_NE(answer, nullptr) << c.path;
+    EXPECT_EQ(answer->status, c.status) << c.path << "?" << c.query;
+    EXPECT_EQ(answer->text.starts_with("{\"error\":\""), c.status >= 400) << answer->text;
+    EXPECT_EQ(answer->fields.find("Allow: GET, HEAD, OPTIONS") != std::string_view::npos,
+              c.status == 405 || c.method == HttpMethod::kOptions);
+  }
+}
+
+TEST_F(Routes, SayNotModifiedWithoutAskingForTheChunk) {
+  const std::string& etag = (*worlds_)[0]->etag(PayloadFormat::kDraco);
+  for (const std::string& value : {etag, "W/" + etag, "\"a\", " + etag, std::string("*")}) {
+    const Route route = resolve_target("/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kGet, value);
+    ASSERT_NE(answer_in(route), nullptr) << value;
+    EXPECT_EQ(answer_in(route)->status, 304);
+  }
+  const Route other = resolve_target("/v1/worlds/default/chunks/0/0/0/0.glb", "", HttpMethod::kGet, etag);
+  EXPECT_TRUE(std::holds_alternative<ChunkRoute>(other)) << "another format has another tag";
+}
+
+TEST_F(Routes, KeepMetricsBehindTheAdminDoor) {
+  EXPECT_EQ(answer_in(resolve_target("/metrics"))->status, 404);
+  const Route admin = resolve_target("/metrics", "", HttpMethod::kGet, "", Door::kAdmin);
+  EXPECT_TRUE(std::holds_alternative<MetricsRoute>(admin));
+  const Route world = resolve_target("/v1/worlds", "", HttpMethod::kGet, "", Door::kAdmin);
+  EXPECT_EQ(answer_in(world)->status, 404);
+}
+
+TEST_F(Routes, TakeAtMostAThousandPoints) {
+  std::string xz = "xz=1,1";
+  for (int i = 1; i < 1000; ++i) xz += ";1,1";
+  EXPECT_TRUE(std::holds_alternative<PointsRoute>(resolve_target("/v1/worlds/default/points", xz)));
+  const Route more = resolve_target("/v1/worlds/default/points", xz + ";1,1");
+  EXPECT_EQ(answer_in(more)->status, 400);
+}
+
+TEST_F(Routes, ReadEscapesInQueriesOnly) {
+  const Route route = resolve_target("/v1/worlds/default/spawn", "near=10%2C-20");
+  ASSERT_TRUE(std::holds_alternative<SpawnRoute>(route));
+  EXPECT_EQ(std::get<SpawnRoute>(route).near_m, glm::dvec2(10, -20));
+  EXPECT_FALSE(percent_decoded("%4"));
+  EXPECT_FALSE(percent_decoded("%zz"));
+  EXPECT_EQ(percent_decoded("a%41"), "aA");
+}
+
+}  // namespace
+}  // namespace talus::server

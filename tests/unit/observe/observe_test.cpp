@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "server/observe/json.hpp"
+#include "server/observe/log.hpp"
+#include "server/observe/metrics.hpp"
+
+namespace talus::server {
+namespace {
+
+using std::chrono::microseconds;
+
+TEST(JsonString, EscapesWhatWouldBreakOutOfItsQuotes) {
+  EXPECT_EQ(json_string("a\"b\\c"), R"("a\"b\\c")");
+  EXPECT_EQ(json_string(std::string("\n\0\x1f\x7f", 4)), R"("\u000a\u0000\u001f\u007f")");
+}
+
+TEST(JsonString, KeepsUtf8AndReplacesWhatIsNot) {
+  EXPECT_EQ(json_string("１é𝄞"), "\"１é𝄞\"");
+  EXPECT_EQ(json_string("a\xff"
+                        "b\xc3"),
+            R"("a\ufffdb\ufffd")");
+  EXPECT_EQ(json_string("\xed\xa0\x80"), R"("\ufffd\ufffd\ufffd")") << "a surrogate half";
+  EXPECT_EQ(json_string("\xc0\xaf"), R"("\ufffd\ufffd")") << "an overlong slash";
+}
+
+TEST(LatencyHistogram, CountsInTheBucketWhoseBoundIsTheFirstNotBelow) {
+  LatencyHistogram histogram;
+  histogram.record(microseconds(1));
+  histogram.record(microseconds(2));
+  histogram.record(microseconds(3));
+  histogram.record(std::chrono::hours(1));
+  histogram.record(microseconds(-5));
+  EXPECT_EQ(histogram.count(0), 2U);
+  EXPECT_EQ(histogram.count(1), 1U);
+  EXPECT_EQ(histogram.count(2), 1U);
+  EXPECT_EQ(histogram.count(kLatencyBuckets - 1), 1U);
+}
+
+TEST(Metrics, WritesEveryCounterHopAndGaugeAsPrometheusReadsThem) {
+  Metrics metrics;
+  metrics.add(Count::kChunkHit, 3);
+  metrics.record(Hop::kBuildChunk, microseconds(700));
+  metrics.gauge("talus_answer", "What it is", [] { return 42.0; });
+  const std::string text = metrics.text();
+  EXPECT_NE(text.find("talus_chunk_requests_total{outcome=\"hit\"} 3"), std::string::npos);
+  EXPECT_NE(text.find("talus_hop_seconds_count{hop=\"build_chunk\"} 1"), std::string::npos);
+  EXPECT_NE(text.find("talus_hop_seconds_bucket{hop=\"build_chunk\",le=\"+Inf\"} 1"), std::string::npos);
+  EXPECT_NE(text.find("talus_answer 42"), std::string::npos);
+  EXPECT_EQ(text.find("_total{} "), std::string::npos);
+}
+
+TEST(Log, KnowsItsLevelsByName) {
+  EXPECT_EQ(log_level("warning"), LogLevel::kWarning);
+  EXPECT_FALSE(log_level("loud"));
+}
+
+TEST(Log, WritesOneJsonObjectALineAndNothingBelowItsLevel) {
+  testing::internal::CaptureStderr();
+  set_log_level(LogLevel::kWarning);
+  log(LogLevel::kInfo, "unseen");
+  log(LogLevel::kError, "seen", {{"text", "a\"\n"}, {"whole", std::int64_t{-3}}, {"flag", true}, {"nan", 0.0 / 0.0}});
+  const std::string out = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(out.find("unseen"), std::string::npos);
+  EXPECT_NE(out.find(R"("level":"error","event":"seen","text":"a\"\u000a","whole":-3,"flag":true,"nan":null})"),
+            std::string::npos)
+      << out;
+  EXPECT_EQ(out.find('\n'), out.size() - 1);
+}
+
+}  // namespace
+}  // namespace talus::server

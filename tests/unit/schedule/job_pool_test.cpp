@@ -1,0 +1,173 @@
+#include "server/schedule/job_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <stdexcept>
+#include <string>
+
+namespace talus::server {
+namespace {
+
+/// A pool of one thread that is kept busy until `open` is called, so that what follows is queued.
+class HeldPool {
+ public:
+  explicit HeldPool(std::size_t queued_per_lane = 256) : pool({1, queued_per_lane}) {
+    std::promise<void> started;
+    pool.push(Lane::kStream, 0.0, [this, &started](const JobPool::Context&) {
+      started.set_value();
+      opened_.get_future().wait();
+    });
+    started.get_future().wait();
+  }
+  void open() { opened_.set_value(); }
+
+ private:
+  std::promise<void> opened_;
+
+ public:
+  JobPool pool;
+};
+
+/// Waits until everything pushed to one lane before has run.
+void finish(JobPool& pool) {
+  std::promise<void> done;
+  pool.push(Lane::kStream, 1e9, [&](const JobPool::Context&) { done.set_value(); });
+  done.get_future().wait();
+}
+
+TEST(JobPool, RunsTheMostUrgentJobFirst) {
+  HeldPool held;
+  std::string order;
+  const auto append = [&](char c) { return [&order, c](const JobPool::Context&) { order += c; }; };
+  held.pool.push(Lane::kStream, 30.0, append('c'));
+  held.pool.push(Lane::kStream, 10.0, append('a'));
+  held.pool.push(Lane::kStream, 20.0, append('b'));
+  held.open();
+  finish(held.pool);
+  EXPECT_EQ(order, "abc");
+}
+
+TEST(JobPool, LooksAtUrgencyWhenAThreadIsFreeNotWhenTheJobCameIn) {
+  HeldPool held;
+  std::string order;
+  const auto append = [&](char c) { return [&order, c](const JobPool::Context&) { order += c; }; };
+  const auto first = held.pool.push(Lane::kStream, 1.0, append('a'));
+  held.pool.push(Lane::kStream, 2.0, append('b'));
+  first->urgency.store(50.0);
+  held.open();
+  finish(held.pool);
+  EXPECT_EQ(order, "ba");
+}
+
+TEST(JobPool, RunsEqualJobsInOrderOfArrival) {
+  HeldPool held;
+  std::string order;
+  for (const char c : std::string("abcdef")) {
+    held.pool.push(Lane::kStream, 1.0, [&order, c](const JobPool::Context&) { order += c; });
+  }
+  held.open();
+  finish(held.pool);
+  EXPECT_EQ(order, "abcdef");
+}
+
+TEST(JobPool, LetsNoJobStarveBehindMoreUrgentOnesThatKeepComing) {
+  HeldPool held;
+  bool has_run = false;
+  held.pool.push(Lane::kStream, 20.0, [&](const JobPool::Context&) { has_run = true; });
+  // Each pushes a successor that is more urgent than the waiting job: without ageing it would wait for all of them.
+  int left = 1000;
+  std::promise<int> seen;
+  std::function<void(const JobPool::Context&)> next = [&](const JobPool::Context&) {
+    if (has_run || --left == 0) return seen.set_value(left);
+    held.pool.push(Lane::kStream, 0.0, next);
+  };
+  held.pool.push(Lane::kStream, 0.0, next);
+  held.open();
+  EXPECT_GT(seen.get_future().get(), 800);
+}
+
+TEST(JobPool, TakesTurnsBetweenLanes) {
+  HeldPool held;
+  std::string order;
+  for (int i = 0; i < 3; ++i) held.pool.push(Lane::kStream, 0.0, [&](const JobPool::Context&) { order += 's'; });
+  for (int i = 0; i < 3; ++i) held.pool.push(Lane::kHttp, 99.0, [&](const JobPool::Context&) { order += 'h'; });
+  held.open();
+  finish(held.pool);
+  EXPECT_TRUE(order == "hshshs" || order == "shshsh") << order;
+}
+
+TEST(JobPool, RefusesWhenALaneIsFullButKeepsTheOtherOpen) {
+  HeldPool held(2);
+  const auto nothing = [](const JobPool::Context&) {};
+  EXPECT_NE(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
+  EXPECT_NE(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
+  EXPECT_EQ(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
+  EXPECT_EQ(held.pool.queued(Lane::kStream), 2U);
+  EXPECT_NE(held.pool.push(Lane::kHttp, 0.0, nothing), nullptr);
+  held.open();
+}
+
+TEST(JobPool, NeverStartsACancelledJobAndFreesItsPlace) {
+  HeldPool held(1);
+  bool has_run = false;
+  const auto job = held.pool.push(Lane::kStream, 0.0, [&](const JobPool::Context&) { has_run = true; });
+  EXPECT_TRUE(held.pool.cancel(job));
+  EXPECT_EQ(held.pool.queued(Lane::kStream), 0U);
+  held.open();
+  finish(held.pool);
+  EXPECT_FALSE(has_run);
+}
+
+TEST(JobPool, TellsARunningJobThatItIsCancelled) {
+  JobPool pool({1, 8});
+  std::promise<void> started;
+  std::promise<void> cancelled;
+  std::promise<bool> seen;
+  const auto job = pool.push(Lane::kStream, 0.0, [&](const JobPool::Context& context) {
+    started.set_value();
+    cancelled.get_future().wait();
+    seen.set_value(context.token.is_cancelled());
+  });
+  started.get_future().wait();
+  EXPECT_FALSE(pool.cancel(job));
+  cancelled.set_value();
+  EXPECT_TRUE(seen.get_future().get());
+}
+
+TEST(JobPool, OutlivesAJobThatThrows) {
+  JobPool pool({1, 8});
+  pool.push(Lane::kStream, 0.0, [](const JobPool::Context&) { throw std::runtime_error("broken"); });
+  finish(pool);
+  EXPECT_EQ(pool.failed(), 1U);
+}
+
+TEST(JobPool, GivesEveryThreadAnIndexOfItsOwn) {
+  JobPool pool({3, 64});
+  std::array<std::atomic<int>, 3> inside{};
+  std::atomic<int> left{60};
+  std::atomic<bool> is_shared{false};
+  std::promise<void> done;
+  for (int i = 0; i < 60; ++i) {
+    pool.push(Lane::kStream, 0.0, [&](const JobPool::Context& context) {
+      if (inside.at(context.thread).fetch_add(1) != 0) is_shared = true;
+      inside.at(context.thread).fetch_sub(1);
+      if (left.fetch_sub(1) == 1) done.set_value();
+    });
+  }
+  done.get_future().wait();
+  EXPECT_FALSE(is_shared);
+}
+
+TEST(JobPool, DropsWhatIsQueuedWhenItStops) {
+  HeldPool held;
+  const auto owned = std::make_shared<int>(1);
+  held.pool.push(Lane::kStream, 0.0, [owned](const JobPool::Context&) {});
+  held.open();
+  held.pool.stop();
+  EXPECT_EQ(owned.use_count(), 1);
+  EXPECT_EQ(held.pool.push(Lane::kStream, 0.0, [](const JobPool::Context&) {}), nullptr);
+}
+
+}  // namespace
+}  // namespace talus::server

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "protocol/mesh_codec.hpp"
+#include "server/world/place_query.hpp"
+#include "server/world/terrain_builder.hpp"
+
+namespace talus::server {
+namespace {
+
+TEST(TerrainBuilder, GivesTheBytesOfBuildAndEncodeWhateverWasBuiltBefore) {
+  Worlds worlds;
+  worlds.push_back(std::make_unique<const World>(Manifest{}));
+  const WorldFunction& world = worlds[0]->function();
+  const SystemClock clock;
+  Metrics metrics;
+  TerrainBuilder builder(worlds, clock, metrics, 1);
+  int meshes = 0;
+  for (const std::int32_t lod : {2, 5}) {
+    for (std::int32_t x = -1; x <= 1; ++x) {
+      for (std::int32_t y = -8; y < 24; ++y) {
+        const ChunkKey key{lod, x, y, 3};
+        PayloadName name;
+        name.key = key;
+        const auto payload = builder.build(name, 0, CancelToken{});
+        ASSERT_TRUE(payload.has_value());
+        ChunkScratch scratch;
+        ChunkMesh mesh;
+        ASSERT_EQ(payload->kind, build_chunk(world, key, scratch, mesh));
+        if (payload->kind != ChunkKind::kMesh) continue;
+        ++meshes;
+        EXPECT_EQ(payload->bytes,
+                  *protocol::encode_draco(mesh, protocol::mesh_lattice(key, world.cells(), world.voxel_m())));
+      }
+    }
+  }
+  EXPECT_GT(meshes, 5);
+}
+
+TEST(TerrainBuilder, MakesNothingOnceCancelled) {
+  Worlds worlds;
+  worlds.push_back(std::make_unique<const World>(Manifest{}));
+  const SystemClock clock;
+  Metrics metrics;
+  TerrainBuilder builder(worlds, clock, metrics, 1);
+  CancelToken token;
+  token.cancel();
+  EXPECT_FALSE(builder.build({}, 0, token));
+}
+
+TEST(StandingPlace, IsDryAndFlatEnoughAndNearWhereItCanBe) {
+  const WorldFunction world{Manifest{}};
+  for (const double at : {0.0, 12'345.0, -700'000.0, 1.0e9}) {
+    const auto place = standing_place(world, {at, -at});
+    if (!place) continue;
+    EXPECT_GT(place->y, 2.0);
+    EXPECT_LT(std::hypot(place->x - at, place->z + at), 200'000.0);
+    const std::vector<glm::dvec2> around{{place->x + 1, place->z}, {place->x - 1, place->z}};
+    EXPECT_NE(points_json(world, around).find("height_m"), std::string::npos);
+  }
+  EXPECT_TRUE(standing_place(world, {0, 0}).has_value());
+}
+
+TEST(StandingPlace, CanBeAskedForAtTheEdgeOfTheWorld) {
+  const WorldFunction world{Manifest{}};
+  const double edge = place_limit_m(world);
+  standing_place(world, {edge, -edge});
+}
+
+TEST(WorldsJson, NamesEveryWorldAndItsHash) {
+  Worlds worlds;
+  worlds.push_back(std::make_unique<const World>(Manifest{}));
+  EXPECT_EQ(worlds_json(worlds), "{\"worlds\":[{\"name\":\"default\",\"world_hash\":\"" + worlds[0]->hash() + "\"}]}");
+  EXPECT_EQ(world_index(worlds, "default"), 0U);
+  EXPECT_EQ(world_index(worlds, "other"), 1U);
+}
+
+}  // namespace
+}  // namespace talus::server
