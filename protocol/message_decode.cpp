@@ -1,6 +1,7 @@
 // Bytes -> values of messages. Every byte is hostile: the Verifier bounds every offset before it is followed, and every
 // text and list is measured before it is copied. Pure.
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 
@@ -38,8 +39,14 @@ class FieldReader {
   std::vector<HeldChunk> held(const flatbuffers::Vector<const wire::HeldKey*>* from) {
     std::vector<HeldChunk> out;
     if (!bounded(from, kKeysPerMessageMax)) return out;
+    // The Verifier aligns a list's length, not its elements: each is copied to where it may be read.
+    const std::uint8_t* at = from->Data();
     out.reserve(from->size());
-    for (const wire::HeldKey* item : *from) out.push_back({key(item->key()), item->revision()});
+    for (std::uint32_t i = 0; i < from->size(); ++i, at += sizeof(wire::HeldKey)) {
+      wire::HeldKey item;
+      std::memcpy(&item, at, sizeof item);
+      out.push_back({key(item.key()), item.revision()});
+    }
     return out;
   }
 

@@ -23,10 +23,11 @@ wire::Vec3 wire_vec(const glm::dvec3& v) {
 Offset<flatbuffers::Vector<const wire::HeldKey*>> wire_held(FlatBufferBuilder& builder,
                                                             const std::vector<HeldChunk>& chunks) {
   TALUS_CHECK(chunks.size() <= kKeysPerMessageMax);
-  wire::HeldKey* out = nullptr;
-  const auto offset = builder.CreateUninitializedVectorOfStructs(chunks.size(), &out);
-  for (const HeldChunk& chunk : chunks) *out++ = wire::HeldKey(wire_key(chunk.key), chunk.revision);
-  return offset;
+  // By a filler: flatc 2.0.8's uninitialised vectors of structs are not aligned.
+  const auto fill = [&](std::size_t i, wire::HeldKey* out) {
+    *out = wire::HeldKey(wire_key(chunks[i].key), chunks[i].revision);
+  };
+  return builder.CreateVectorOfStructs<wire::HeldKey>(chunks.size(), fill);
 }
 
 /// Writes one message of the union and names its type; one overload for each.
@@ -88,9 +89,8 @@ struct UnionWriter {
   }
   Written operator()(const Leave& m) const {
     TALUS_CHECK(m.keys.size() <= kKeysPerMessageMax);
-    wire::Key* out = nullptr;
-    const auto keys = builder.CreateUninitializedVectorOfStructs(m.keys.size(), &out);
-    for (const ChunkKey& key : m.keys) *out++ = wire_key(key);
+    const auto fill = [&](std::size_t i, wire::Key* out) { *out = wire_key(m.keys[i]); };
+    const auto keys = builder.CreateVectorOfStructs<wire::Key>(m.keys.size(), fill);
     return {wire::Message::Leave, wire::CreateLeave(builder, keys).Union()};
   }
   Written operator()(const Idle& m) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -135,6 +136,23 @@ TEST(Message, WithTheMostKeysFitsTheInboundLimit) {
   const std::vector<std::byte> bytes = encode(held);
   EXPECT_LE(bytes.size(), kInboundMessageBytesMax);
   EXPECT_TRUE(decode(bytes));
+}
+
+TEST(Message, AlignsListsWhateverTheirLength) {
+  for (std::size_t size = 0; size < 20; ++size) {
+    Held held;
+    for (std::size_t i = 0; i < size; ++i) held.chunks.push_back({{0, static_cast<int>(i), 0, 0}, 0x1122334455667788});
+    const std::vector<std::byte> bytes = encode(held);
+    // The revisions lie where a reader that maps the head on to aligned memory finds them: at multiples of 8.
+    for (std::size_t at = kPrefixBytes; at + 8 <= bytes.size(); ++at) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, bytes.data() + at, sizeof value);
+      EXPECT_TRUE(value != 0x1122334455667788 || (at - kPrefixBytes) % 8 == 0) << size;
+    }
+    const auto decoded = decode(bytes);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(std::get<Held>(decoded->message).chunks, held.chunks);
+  }
 }
 
 TEST(Message, WithAKeyOutsideTheWorldIsRefused) {
