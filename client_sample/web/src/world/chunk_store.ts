@@ -136,7 +136,7 @@ export class ChunkStore<Mesh> {
 
   /// Whether every wanted chunk is there. Meaningful after resolve().
   get complete(): boolean {
-    return !this.changed && this.missing === 0 && this.wanted.size > 0;
+    return !this.changed && this.missing === 0;
   }
 
   held(): Iterable<ChunkNode<Mesh>> {

@@ -8,7 +8,7 @@ uniform float uFar;           // nothing is drawn beyond
 const float kRayleighHeight = 8000.0;
 const float kHazeHeight = 1100.0;
 const vec3 kRayleigh = vec3(5.8e-6, 13.5e-6, 33.1e-6);
-const float kHaze = 2.4e-5;
+const float kHaze = 1.9e-5;
 
 vec2 skyTablePlace(vec3 direction) {
   float azimuth = acos(clamp(dot(normalize(direction.xz + 1e-6), normalize(uSunDirection.xz)), -1.0, 1.0));
@@ -24,14 +24,17 @@ float meanDensity(float y, float rise, float scaleHeight) {
   return exp(-max(y, 0.0) / scaleHeight) * along;
 }
 
-// What is left of `radiance` after `distance` of air, and what the air adds. The last seventh before uFar goes over
-// into the air altogether, so that the world has no edge.
+// What is left of `radiance` after `distance` of air, and what the air adds. Towards uFar everything goes over into the
+// air, so that the world has no edge.
 vec3 throughAir(vec3 radiance, vec3 direction, float distance, float eyeHeight) {
   float rise = max(direction.y * distance, -eyeHeight);
-  vec3 depth = kRayleigh * (1.5 * distance * meanDensity(eyeHeight, rise, kRayleighHeight));
+  vec3 depth = kRayleigh * (1.25 * distance * meanDensity(eyeHeight, rise, kRayleighHeight));
   depth += kHaze * distance * meanDensity(eyeHeight, rise, kHazeHeight);
   vec3 transmittance = exp(-depth);
-  transmittance *= 1.0 - smoothstep(0.84 * uFar, 0.995 * uFar, distance);
+  float reach = distance / uFar;
+  transmittance *= exp(-3.0 * reach * reach * reach * reach) * (1.0 - smoothstep(0.85, 0.995, reach));
   vec3 level = normalize(vec3(direction.x, max(direction.y, 0.012), direction.z));
-  return radiance * transmittance + skyRadiance(level) * (1.0 - transmittance);
+  // Looking down there is less of the bright horizon's light on the way.
+  float down = 1.0 - 0.5 * smoothstep(0.05, 0.9, -direction.y);
+  return radiance * transmittance + skyRadiance(level) * (down * (1.0 - transmittance));
 }

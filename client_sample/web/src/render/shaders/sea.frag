@@ -85,8 +85,8 @@ vec3 toneCurve(vec3 radiance) {
   vec3 v4 = v2 * v2;
   v = 15.5 * v4 * v2 - 40.14 * v4 * v + 31.96 * v4 - 6.868 * v2 * v + 0.4298 * v2 + 0.1191 * v - 0.00232;
   float luma = dot(v, vec3(0.2126, 0.7152, 0.0722));
-  v = pow(max(v, 0.0), vec3(1.22));
-  v = luma + (v - luma) * 1.32;
+  v = luma + (v - luma) * 1.30;
+  v = pow(max(v, 0.0), vec3(1.20));
   return clamp(kOut * v, 0.0, 1.0);
 }
 

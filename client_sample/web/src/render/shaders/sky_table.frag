@@ -12,6 +12,7 @@ const vec3 kRayleigh = vec3(5.8e-6, 13.5e-6, 33.1e-6);
 const vec3 kOzone = vec3(0.65e-6, 1.88e-6, 0.085e-6);
 const float kMie = 5.0e-6;
 const float kForward = 0.78;
+const float kManyTimes = 0.042;  // share of the sun's power in light scattered more than once, per steradian
 const int kSteps = 40;
 const int kLightSteps = 10;
 
@@ -60,8 +61,9 @@ void main() {
     vec3 density = densities(length(at) - kGround);
     vec3 through = extinction(depth + 0.5 * span * density);
     vec3 sunLight = sunLightAt(at);
-    vec3 scattered = kRayleigh * density.x * (rayleighPhase + 0.028) + kMie * density.y * (miePhase + 0.02);
-    light += span * through * sunLight * scattered;
+    light += span * through * sunLight * (kRayleigh * density.x * rayleighPhase + kMie * density.y * miePhase);
+    // Light scattered before comes from everywhere and is spent more slowly: it keeps the horizon pale and blue.
+    light += span * sqrt(through) * kManyTimes * (kRayleigh * density.x * vec3(0.84, 0.96, 1.10) + kMie * density.y);
     depth += span * density;
     walked = next;
   }

@@ -67,20 +67,20 @@ vec3 rockColour(float warp, float steep, Detail stone, Detail boulder) {
   float height = vPlace.y + warp;
   vec4 thick = texture(uStrataThick, vec2(height / 560.0, 0.5));
   vec4 thin = texture(uStrataThin, vec2((height + boulder.shape * 2.0) / 93.0, 0.5));
-  vec3 tint = mix(vec3(1.0), thick.rgb * 2.0, 0.85) * mix(vec3(1.0), thin.rgb * 2.0, 0.42 + 0.25 * steep);
-  float weathered = 0.84 + 0.30 * boulder.grain + 0.16 * stone.shape;
-  return uPalette[0] * tint * weathered;
+  vec3 tint = thick.rgb * 2.0 * mix(vec3(1.0), thin.rgb * 2.0, 0.5 + 0.3 * steep);
+  float weathered = 0.80 + 0.34 * boulder.grain + 0.20 * stone.shape;
+  return uPalette[0] * vec3(0.98, 1.0, 1.05) * tint * weathered;
 }
 
-vec3 grassColour(float damp, Detail fine, Detail stone, Detail hill) {
+vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail hill) {
   vec3 base = uPalette[3];
-  vec3 lush = base * vec3(0.50, 0.74, 0.42);
-  vec3 dry = base * vec3(1.42, 1.06, 0.90);
-  float dryness = clamp(0.42 + vPlace.y / 1900.0 + hill.shape * 0.65 + stone.shape * 0.22 - damp * 0.45, 0.0, 1.0);
+  vec3 lush = base * vec3(0.66, 0.72, 0.58);
+  vec3 dry = base * vec3(1.50, 1.10, 1.22);
+  float dryness = clamp(0.40 + vPlace.y / 1700.0 + hill.shape * 1.1 + boulder.shape * 0.5 + stone.shape * 0.25 - damp * 0.55, 0.0, 1.0);
   vec3 out_ = mix(lush, dry, dryness);
   // Scrub in the damp hollows: dark, mottled.
-  float scrub = smoothstep(0.50, 0.72, stone.grain * 0.7 + damp * 0.32 + hill.shape * 0.25);
-  out_ = mix(out_, base * vec3(0.26, 0.40, 0.22), scrub * 0.62);
+  float scrub = smoothstep(0.44, 0.62, stone.grain * 0.45 + boulder.grain * 0.35 + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
+  out_ = mix(out_, base * vec3(0.34, 0.40, 0.36), scrub * 0.62);
   return out_ * (0.86 + 0.20 * fine.grain + 0.10 * fine.shape);
 }
 
@@ -94,6 +94,11 @@ void main() {
   Detail fine = detailAt(planes, kTileFine, px, py);
   Detail stone = detailAt(planes, kTileStone, px, py);
   Detail boulder = detailAt(planes, kTileBoulder, px, py);
+  // From afar its repetition would show.
+  float near = 1.0 - smoothstep(1500.0, 6000.0, distance);
+  boulder.bump *= 0.35 + 0.65 * near;
+  boulder.shape *= 0.25 + 0.75 * near;
+  boulder.grain = mix(0.4, boulder.grain, 0.25 + 0.75 * near);
   Detail hill = detailAt(Planes(ivec3(1, 2, 0), ivec3(0), vec2(1.0, 0.0)), kTileHill, px, py);
 
   // Covers crumble into one another: each competes with its own noise.
@@ -118,7 +123,7 @@ void main() {
   vec3 rock = rockColour(warp, steep, stone, boulder);
   vec3 scree = uPalette[1] * (0.62 + 0.62 * fine.grain + 0.18 * stone.shape) * mix(vec3(1.0), rock / max(uPalette[0], 0.05), 0.4);
   vec3 soil = uPalette[2] * (0.78 + 0.25 * stone.shape + 0.25 * fine.grain);
-  vec3 grass = grassColour(damp, fine, stone, hill);
+  vec3 grass = grassColour(damp, fine, stone, boulder, hill);
   float wet = 1.0 - smoothstep(0.3, 2.2, vPlace.y + stone.shape * 0.8);
   vec3 sand = uPalette[4] * (0.88 + 0.12 * stone.shape + 0.10 * fine.shape) * mix(1.0, 0.52, wet);
   vec3 snow = uPalette[5] * (0.93 + 0.05 * boulder.shape);
@@ -153,7 +158,7 @@ void main() {
   float sheen = pow(max(dot(bumped, halfway), 0.0), 24.0) * (0.10 * coverB.y + 0.22 * wet * coverB.x);
   radiance += uSunIrradiance * sheen * sun * 0.3183;
 
-  // Below the sea the water takes over; sea.frag adds the air in front of it.
-  if (vPlace.y > 0.0) radiance = throughAir(radiance, -toEye, distance, uEyeHeight);
+  // Below the sea the water takes over, and sea.frag adds the air in front of it. The margin is what depth may round.
+  if (vPlace.y > -0.05 - 2e-4 * distance) radiance = throughAir(radiance, -toEye, distance, uEyeHeight);
   colour = vec4(radiance, 1.0);
 }
