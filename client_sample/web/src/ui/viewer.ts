@@ -95,6 +95,7 @@ export class Viewer {
     this.body.pitch = pitch;
     this.body.velocityX = this.body.velocityY = this.body.velocityZ = 0;
     this.flight = null;
+    this.stream.jumped();
   }
 
   direction(): { x: number; y: number; z: number } {
@@ -162,6 +163,7 @@ export class Viewer {
     [body.velocityX, body.velocityY, body.velocityZ] = [speed(0), speed(1), speed(2)];
     if (t < 1) return;
     this.flight = null;
+    this.stream.jumped();
     flight.done();
   }
 

@@ -69,6 +69,13 @@ export class WorldStream<Mesh extends PlacedSurface> {
     this.store.resolve();
   }
 
+  /// The viewer has jumped: nothing is complete until the server has heard of it.
+  jumped(): void {
+    this.lastSent = null;
+    this.lastSent_ms = -Infinity;
+    this.idleFor = 0;
+  }
+
   /// Everything that the latest view wants has arrived and is drawn.
   get complete(): boolean {
     return this.idleFor !== 0 && this.idleFor === this.connection.viewSequence && this.store.complete;
