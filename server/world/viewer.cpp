@@ -29,7 +29,9 @@ bool Viewer::on_message(const protocol::Message& message) {
     is_stale_ = true;
   } else if (const auto* held = std::get_if<protocol::Held>(&message)) {
     hold(held->chunks);
-    is_stale_ = true;
+    // A resuming client says what it holds before it says what it sees: measured against no view at all, everything
+    // would be left and then sent again.
+    is_stale_ = is_stale_ || view_.has_value() || !want_.empty();
   } else if (const auto* want = std::get_if<protocol::Want>(&message)) {
     want_.clear();
     for (const protocol::HeldChunk& chunk : want->chunks) want_.push_back(chunk.key);
