@@ -14,9 +14,9 @@ declare global {
   }
 }
 
-const kStartHeight = 80; // metres above the spawn
-const kLookYaw = 0;
-const kLookPitch = -8;
+const kStartHeight = 95; // metres above the spawn
+const kLookYaw = 180; // degrees: across the light, which models the land best
+const kLookPitch = -7;
 const kRetry_ms = 3000;
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;

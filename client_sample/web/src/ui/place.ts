@@ -34,7 +34,7 @@ export function placeFromQuery(text: string): Place {
     at: triple(query.get('at')),
     yaw: number(query, 'yaw', NaN, -360, 360),
     pitch: number(query, 'pitch', NaN, -89, 89),
-    farM: number(query, 'far', 18_000, 500, kFarMax),
+    farM: number(query, 'far', 30_000, 500, kFarMax),
     nearM: number(query, 'near', 128, 112, 512),
     hud: query.get('hud') !== '0',
     world: query.get('world'),

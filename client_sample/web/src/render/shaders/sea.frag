@@ -17,6 +17,7 @@ uniform float uTime;
 uniform float uExposure;
 
 const vec3 kAbsorbed = vec3(0.36, 0.085, 0.062);  // per metre of coastal water
+const vec3 kWhite = vec3(0.94, 1.0, 1.07);  // the eye has got used to a low sun
 const float kNothing = 1e9;
 
 // Distance along the unit of `ray` (whose z is -1 in camera space) to what was drawn there.
@@ -108,7 +109,7 @@ void main() {
     vec3 water = (uSkyAbove + uSunIrradiance * 0.1) * vec3(0.02, 0.10, 0.12) * exp(uEyeHeight * 0.04);
     radiance = mix(water, radiance, exp(-kAbsorbed * min(path, 500.0)));
   }
-  vec3 shown = toneCurve(radiance * uExposure);
+  vec3 shown = toneCurve(radiance * kWhite * uExposure);
   // A grain below one step of the screen hides the bands of smooth skies.
   float grain = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
   // AgX's polynomial ends in display light (gamma 2.2).

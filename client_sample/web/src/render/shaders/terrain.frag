@@ -67,21 +67,27 @@ vec3 rockColour(float warp, float steep, Detail stone, Detail boulder) {
   float height = vPlace.y + warp;
   vec4 thick = texture(uStrataThick, vec2(height / 560.0, 0.5));
   vec4 thin = texture(uStrataThin, vec2((height + boulder.shape * 2.0) / 93.0, 0.5));
-  vec3 tint = thick.rgb * 2.0 * mix(vec3(1.0), thin.rgb * 2.0, 0.5 + 0.3 * steep);
-  float weathered = 0.80 + 0.34 * boulder.grain + 0.20 * stone.shape;
-  return uPalette[0] * vec3(0.98, 1.0, 1.05) * tint * weathered;
+  vec3 tint = thick.rgb * 2.0 * mix(vec3(1.0), thin.rgb * 2.0, 0.55 + 0.35 * steep);
+  float weathered = 0.66 + 0.52 * boulder.grain + 0.42 * stone.grain + 0.18 * stone.shape;
+  // Water stains faces from above: streaks many times as high as wide.
+  float along = abs(vNormal.x) > abs(vNormal.z) ? vPlace.z : vPlace.x;
+  float stain = texture(uNoise, vec2(along / 64.0, vPlace.y / 1024.0)).a;
+  weathered *= 1.0 - smoothstep(0.25, 0.6, steep) * 0.55 * smoothstep(0.38, 0.62, stain);
+  return uPalette[0] * vec3(0.97, 1.0, 1.06) * tint * weathered;
 }
 
 vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail hill) {
-  vec3 base = uPalette[3];
-  vec3 lush = base * vec3(0.66, 0.72, 0.58);
-  vec3 dry = base * vec3(1.50, 1.10, 1.22);
-  float dryness = clamp(0.40 + vPlace.y / 1700.0 + hill.shape * 1.1 + boulder.shape * 0.5 + stone.shape * 0.25 - damp * 0.55, 0.0, 1.0);
-  vec3 out_ = mix(lush, dry, dryness);
+  vec3 base = mix(uPalette[3], vec3(dot(uPalette[3], vec3(0.3, 0.6, 0.1))), 0.34);
+  vec3 lush = base * vec3(0.62, 0.70, 0.56);
+  vec3 dry = base * vec3(1.46, 1.14, 1.05);
+  float patches = hill.shape * 1.1 + boulder.shape * 0.5 + stone.shape * 0.35 + fine.shape * 0.25;
+  float dryness = clamp(0.44 + vPlace.y / 1700.0 + patches - damp * 0.5, 0.0, 1.0);
+  vec3 blade = mix(lush, dry, dryness);
   // Scrub in the damp hollows: dark, mottled.
-  float scrub = smoothstep(0.44, 0.62, stone.grain * 0.45 + boulder.grain * 0.35 + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
-  out_ = mix(out_, base * vec3(0.34, 0.40, 0.36), scrub * 0.62);
-  return out_ * (0.86 + 0.20 * fine.grain + 0.10 * fine.shape);
+  float mottle = stone.grain * 0.45 + boulder.grain * 0.35 + fine.grain * 0.12;
+  float scrub = smoothstep(0.48, 0.68, mottle + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
+  blade = mix(blade, base * vec3(0.36, 0.42, 0.36), scrub * 0.6);
+  return blade * (0.62 + 0.52 * fine.grain + 0.26 * stone.grain + 0.16 * fine.shape);
 }
 
 void main() {
@@ -137,7 +143,7 @@ void main() {
   albedo = mix(albedo, albedo * 0.6 + vec3(0.155, 0.145, 0.13), streak * stony * 0.75);
   albedo *= 0.92 + 0.16 * (hill.grain - 0.4) + 0.10 * boulder.shape;
 
-  float rough = coverA.x * 1.0 + coverA.y * 0.9 + coverA.z * 0.6 + coverA.w * 0.55 + coverB.x * 0.25 + coverB.y * 0.22 + coverB.z * 0.8;
+  float rough = coverA.x * 1.5 + coverA.y * 1.0 + coverA.z * 0.6 + coverA.w * 0.8 + coverB.x * 0.25 + coverB.y * 0.13 + coverB.z * 0.8;
   vec3 bump = boulder.bump * 1.5 + stone.bump * 1.6 + fine.bump * 1.1 * (1.0 - smoothstep(20.0, 90.0, distance));
   bump -= n * dot(bump, n);
   vec3 bumped = normalize(n - bump * rough);
@@ -145,7 +151,7 @@ void main() {
   float toSun = dot(bumped, uSunDirection);
   float sun = max(toSun, 0.0) * smoothstep(-0.06, 0.10, dot(n, uSunDirection));
   if (sun > 0.0) sun *= sunReaching(vRelative, n);
-  float hollow = mix(0.62, 1.0, smoothstep(-1.0, 0.1, vRidge)) * (0.82 + 0.18 * smoothstep(-0.5, 0.3, stone.shape + fine.shape * 0.5));
+  float hollow = mix(0.62, 1.0, smoothstep(-1.0, 0.1, vRidge)) * mix(0.82 + 0.18 * smoothstep(-0.5, 0.3, stone.shape + fine.shape * 0.5), 1.0, coverB.y);
   float upward = bumped.y * 0.5 + 0.5;
   vec3 ambient = mix(uSkyAround * 0.75, uSkyAbove, upward) * hollow;
   // Light off the sunlit ground around: warm, from below and the side.
