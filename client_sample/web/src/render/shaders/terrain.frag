@@ -85,8 +85,8 @@ vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail h
   vec3 blade = mix(lush, dry, dryness);
   // Scrub in the damp hollows: dark, mottled.
   float mottle = stone.grain * 0.45 + boulder.grain * 0.35 + fine.grain * 0.12;
-  float scrub = smoothstep(0.48, 0.68, mottle + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
-  blade = mix(blade, base * vec3(0.36, 0.42, 0.36), scrub * 0.6);
+  float scrub = smoothstep(0.46, 0.86, mottle + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
+  blade = mix(blade, base * vec3(0.46, 0.52, 0.44), scrub * 0.62);
   return blade * (0.62 + 0.52 * fine.grain + 0.26 * stone.grain + 0.16 * fine.shape);
 }
 
@@ -143,7 +143,7 @@ void main() {
   albedo = mix(albedo, albedo * 0.6 + vec3(0.155, 0.145, 0.13), streak * stony * 0.75);
   albedo *= 0.92 + 0.16 * (hill.grain - 0.4) + 0.10 * boulder.shape;
 
-  float rough = coverA.x * 1.5 + coverA.y * 1.0 + coverA.z * 0.6 + coverA.w * 0.8 + coverB.x * 0.25 + coverB.y * 0.13 + coverB.z * 0.8;
+  float rough = coverA.x * 1.5 + coverA.y * 1.0 + coverA.z * 0.6 + coverA.w * 0.6 + coverB.x * 0.25 + coverB.y * 0.13 + coverB.z * 0.8;
   vec3 bump = boulder.bump * 1.5 + stone.bump * 1.6 + fine.bump * 1.1 * (1.0 - smoothstep(20.0, 90.0, distance));
   bump -= n * dot(bump, n);
   vec3 bumped = normalize(n - bump * rough);
