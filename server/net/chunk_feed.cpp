@@ -13,9 +13,11 @@ namespace {
 constexpr std::size_t kWindowsSum = 192;
 constexpr std::size_t kWindowMin = 2;
 constexpr double kRetryS = 0.1;  ///< after the pool was full
-/// A view is turned into an interest area at most this often, and never for more than 1/20 of a thread's time.
+/// A view is turned into an interest area at most this often, and all sessions together spend at most about a quarter
+/// of one thread on it.
 constexpr double kRefreshS = 0.05;
-constexpr double kRefreshShare = 20;
+constexpr double kRefreshMaxS = 0.5;
+constexpr std::size_t kRefreshShare = 4;
 /// Nothing is requested while this much is queued: what is queued can no longer be overtaken by what is nearer.
 constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 
@@ -66,8 +68,9 @@ void ChunkFeed::refresh() {
     writer_.send_bulk(protocol::Leave{{first, first + static_cast<std::ptrdiff_t>(count)}});
   }
   const Instant now = net_.clock.now();
-  const auto cost = std::chrono::duration_cast<Duration>((now - start) * kRefreshShare);
-  refresh_at_ = now + std::max(seconds(kRefreshS), cost);
+  const auto sessions = static_cast<Duration::rep>(net_.sessions.load(std::memory_order_relaxed) * kRefreshShare);
+  // A pause of the machine is not a cost: beyond half a second a viewer would feel it.
+  refresh_at_ = now + std::clamp((now - start) * sessions, seconds(kRefreshS), seconds(kRefreshMaxS));
 }
 
 std::size_t ChunkFeed::window() const {

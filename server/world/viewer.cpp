@@ -17,6 +17,11 @@ double want_urgency(std::size_t i) {
 /// Nothing a client says it holds is remembered beyond this.
 constexpr std::size_t kHeldKeysMax = 2 * protocol::kWantedKeysMax;
 
+/// Order of the heap. Equal urgencies are ordered by key, so that equal views give equal streams.
+bool is_less_urgent(const WantedChunk& a, const WantedChunk& b) {
+  return a.urgency != b.urgency ? a.urgency > b.urgency : a.key > b.key;
+}
+
 }  // namespace
 
 Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes)
@@ -46,19 +51,37 @@ bool Viewer::on_message(const protocol::Message& message) {
   return true;
 }
 
+/// Keeps, of each key, the most urgent state; all of one key are in one phase.
+void Viewer::sort_unique(States& states) {
+  std::sort(states.begin(), states.end(),
+            [](const State& a, const State& b) { return a.key != b.key ? a.key < b.key : a.urgency < b.urgency; });
+  const auto end =
+      std::unique(states.begin(), states.end(), [](const State& a, const State& b) { return a.key == b.key; });
+  states.erase(end, states.end());
+}
+
+Viewer::State* Viewer::find(const ChunkKey& key) {
+  const auto at = std::lower_bound(states_.begin(), states_.end(), key,
+                                   [](const State& state, const ChunkKey& k) { return state.key < k; });
+  return at == states_.end() || at->key != key ? nullptr : &*at;
+}
+
 void Viewer::hold(const std::vector<protocol::HeldChunk>& chunks) {
+  States fresh;
   for (const protocol::HeldChunk& chunk : chunks) {
     // Without edits there is one revision; what a client holds of any other is not what the world is now.
-    if (chunk.revision != 0 || states_.size() >= kHeldKeysMax) continue;
-    const auto [at, fresh] = states_.try_emplace(chunk.key);
-    if (fresh) {
-      at->second.phase = Phase::kHeld;
-    } else if (at->second.phase == Phase::kWanted) {
-      at->second.phase = Phase::kHeld;
+    if (chunk.revision != 0) continue;
+    if (State* known = find(chunk.key)) {
+      // In flight already: it comes once more, which costs bytes but never a hole.
+      if (known->phase != Phase::kWanted) continue;
+      known->phase = Phase::kHeld;
       --wanted_;
+    } else if (states_.size() + fresh.size() < kHeldKeysMax) {
+      fresh.push_back({chunk.key, 0.0, Phase::kHeld});
     }
-    // In flight already: it comes once more, which costs bytes but never a hole.
   }
+  states_.insert(states_.end(), fresh.begin(), fresh.end());
+  sort_unique(states_);
 }
 
 Viewer::States Viewer::target() const {
@@ -67,29 +90,35 @@ Viewer::States Viewer::target() const {
     std::vector<ChunkKey> area;
     protocol::interest_area(view_->view, shape_, area);
     out.reserve(area.size() + want_.size());
-    for (const ChunkKey& key : area) out[key].urgency = protocol::chunk_urgency(view_->view, shape_, key);
+    for (const ChunkKey& key : area) {
+      out.push_back({key, protocol::chunk_urgency(view_->view, shape_, key), Phase::kWanted});
+    }
   }
-  for (std::size_t i = 0; i < want_.size(); ++i) {
-    const auto [at, fresh] = out.try_emplace(want_[i]);
-    at->second.urgency = fresh ? want_urgency(i) : std::min(at->second.urgency, want_urgency(i));
-  }
+  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({want_[i], want_urgency(i), Phase::kWanted});
+  sort_unique(out);
   return out;
+}
+
+/// Both are sorted: one walk finds what stays, what comes and what goes.
+void Viewer::merge_into(States& next, Change& change) const {
+  auto at = next.begin();
+  for (const State& old : states_) {
+    while (at != next.end() && at->key < old.key) ++at;
+    if (at != next.end() && at->key == old.key) {
+      at->phase = old.phase;
+      if (old.phase == Phase::kInFlight) change.moved.push_back({old.key, at->urgency});
+    } else if (old.phase == Phase::kHeld) {
+      change.leave.push_back(old.key);
+    } else if (old.phase == Phase::kInFlight) {
+      change.cancelled.push_back(old.key);
+    }
+  }
 }
 
 Viewer::Change Viewer::refresh() {
   Change change;
   States next = target();
-  for (const auto& [key, state] : states_) {
-    const auto kept = next.find(key);
-    if (kept != next.end()) {
-      kept->second.phase = state.phase;
-      if (state.phase == Phase::kInFlight) change.moved.push_back({key, kept->second.urgency});
-    } else if (state.phase == Phase::kHeld) {
-      change.leave.push_back(key);
-    } else if (state.phase == Phase::kInFlight) {
-      change.cancelled.push_back(key);
-    }
-  }
+  merge_into(next, change);
   in_flight_ -= change.cancelled.size();
   if (is_view_new_) {
     const auto chunks = static_cast<std::uint32_t>(next.size());
@@ -97,14 +126,11 @@ Viewer::Change Viewer::refresh() {
   }
   states_ = std::move(next);
   queue_.clear();
-  for (const auto& [key, state] : states_) {
-    if (state.phase == Phase::kWanted) queue_.push_back({key, state.urgency});
+  for (const State& state : states_) {
+    if (state.phase == Phase::kWanted) queue_.push_back({state.key, state.urgency});
   }
+  std::make_heap(queue_.begin(), queue_.end(), is_less_urgent);
   wanted_ = queue_.size();
-  // Equal urgencies are ordered by key, so that equal views give equal streams.
-  std::sort(queue_.begin(), queue_.end(), [](const WantedChunk& a, const WantedChunk& b) {
-    return a.urgency != b.urgency ? a.urgency > b.urgency : a.key > b.key;
-  });
   is_view_new_ = false;
   is_stale_ = false;
   is_idle_due_ = true;
@@ -113,11 +139,12 @@ Viewer::Change Viewer::refresh() {
 
 std::optional<WantedChunk> Viewer::next_request() {
   while (!queue_.empty()) {
+    std::pop_heap(queue_.begin(), queue_.end(), is_less_urgent);
     const WantedChunk next = queue_.back();
     queue_.pop_back();
-    const auto found = states_.find(next.key);
-    if (found == states_.end() || found->second.phase != Phase::kWanted) continue;
-    found->second.phase = Phase::kInFlight;
+    State* state = find(next.key);
+    if (state == nullptr || state->phase != Phase::kWanted) continue;
+    state->phase = Phase::kInFlight;
     --wanted_;
     ++in_flight_;
     return next;
@@ -126,23 +153,21 @@ std::optional<WantedChunk> Viewer::next_request() {
 }
 
 void Viewer::put_back(const ChunkKey& key) {
-  const auto found = states_.find(key);
-  if (found == states_.end() || found->second.phase != Phase::kInFlight) return;
-  found->second.phase = Phase::kWanted;
+  State* state = find(key);
+  if (state == nullptr || state->phase != Phase::kInFlight) return;
+  state->phase = Phase::kWanted;
   --in_flight_;
   ++wanted_;
-  const WantedChunk chunk{key, found->second.urgency};
-  const auto place = std::upper_bound(queue_.begin(), queue_.end(), chunk,
-                                      [](const WantedChunk& a, const WantedChunk& b) { return a.urgency > b.urgency; });
-  queue_.insert(place, chunk);
+  queue_.push_back({key, state->urgency});
+  std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
 }
 
 Viewer::Delivery Viewer::deliver(const ChunkKey& key, std::uint64_t message_bytes) {
-  const auto found = states_.find(key);
-  if (found == states_.end() || found->second.phase != Phase::kInFlight) return Delivery::kUnwanted;
+  State* state = find(key);
+  if (state == nullptr || state->phase != Phase::kInFlight) return Delivery::kUnwanted;
   if (message_bytes > credit_bytes_) return Delivery::kNoCredit;
   credit_bytes_ -= message_bytes;
-  found->second.phase = Phase::kHeld;
+  state->phase = Phase::kHeld;
   --in_flight_;
   ++chunks_sent_;
   return Delivery::kSend;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include "protocol/interest_area.hpp"
@@ -61,13 +60,19 @@ class Viewer {
  private:
   enum class Phase : std::uint8_t { kWanted, kInFlight, kHeld };
   struct State {
-    Phase phase = Phase::kWanted;
+    ChunkKey key;
     double urgency = 0.0;
+    Phase phase = Phase::kWanted;
   };
-  using States = std::unordered_map<ChunkKey, State, ChunkKeyHash>;
+  /// Sorted by key, each key once. A view has some 2,500 of these and changes ten times a second: a merge of two sorted
+  /// vectors costs a tenth of what hash maps cost.
+  using States = std::vector<State>;
 
+  static void sort_unique(States& states);
   States target() const;
+  State* find(const ChunkKey& key);
   void hold(const std::vector<protocol::HeldChunk>& chunks);
+  void merge_into(States& next, Change& change) const;
 
   const protocol::WorldShape shape_;
   std::optional<protocol::ViewMessage> view_;  ///< the latest, clamped
@@ -76,7 +81,7 @@ class Viewer {
   bool is_stale_ = false;
 
   States states_;
-  std::vector<WantedChunk> queue_;  ///< most urgent last; entries whose phase has changed are skipped
+  std::vector<WantedChunk> queue_;  ///< a heap, most urgent first; entries whose phase has changed are skipped
   std::size_t in_flight_ = 0;
   std::size_t wanted_ = 0;
   bool is_idle_due_ = false;
