@@ -130,6 +130,7 @@ std::optional<std::string> set_from_text(Settings& settings, const SettingInfo& 
 std::expected<void, std::vector<protocol::TextFault>> set_from_toml(Settings& settings, std::string_view text,
                                                                     std::string_view file) {
   std::vector<protocol::TomlField> fields;
+  fields.reserve(std::size(kTable));
   for (const SettingInfo& info : kTable) fields.push_back(toml_field(info));
   auto entries = protocol::read_toml(text, file, fields);
   if (!entries) return std::unexpected(std::move(entries.error()));
