@@ -78,16 +78,16 @@ vec3 rockColour(float warp, float steep, Detail stone, Detail boulder) {
 
 vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail hill) {
   vec3 base = mix(uPalette[3], vec3(dot(uPalette[3], vec3(0.3, 0.6, 0.1))), 0.34);
-  vec3 lush = base * vec3(0.62, 0.70, 0.56);
-  vec3 dry = base * vec3(1.46, 1.14, 1.05);
-  float patches = hill.shape * 1.1 + boulder.shape * 0.5 + stone.shape * 0.35 + fine.shape * 0.25;
+  vec3 lush = base * vec3(0.86, 0.95, 0.74);
+  vec3 dry = base * vec3(1.28, 1.08, 0.98);
+  float patches = hill.shape * 1.1 + boulder.shape * 0.4 + stone.shape * 0.2 + fine.shape * 0.15;
   float dryness = clamp(0.44 + vPlace.y / 1700.0 + patches - damp * 0.5, 0.0, 1.0);
   vec3 blade = mix(lush, dry, dryness);
   // Scrub in the damp hollows: dark, mottled.
   float mottle = stone.grain * 0.45 + boulder.grain * 0.35 + fine.grain * 0.12;
   float scrub = smoothstep(0.46, 0.86, mottle + damp * 0.30 + hill.shape * 0.45 - vPlace.y / 4000.0);
-  blade = mix(blade, base * vec3(0.46, 0.52, 0.44), scrub * 0.62);
-  return blade * (0.62 + 0.52 * fine.grain + 0.26 * stone.grain + 0.16 * fine.shape);
+  blade = mix(blade, base * vec3(0.58, 0.66, 0.52), scrub * 0.55);
+  return blade * (0.72 + 0.40 * fine.grain + 0.18 * stone.grain + 0.12 * fine.shape);
 }
 
 void main() {
@@ -148,8 +148,10 @@ void main() {
   bump -= n * dot(bump, n);
   vec3 bumped = normalize(n - bump * rough);
 
-  float toSun = dot(bumped, uSunDirection);
-  float sun = max(toSun, 0.0) * smoothstep(-0.06, 0.10, dot(n, uSunDirection));
+  // Grass stands up and lets light through: where the sun grazes, its bumps are not what decides between light and shade.
+  float flatToSun = dot(n, uSunDirection);
+  float toSun = mix(dot(bumped, uSunDirection), flatToSun * 0.8 + 0.2, 0.7 * coverA.w);
+  float sun = max(toSun, 0.0) * smoothstep(-0.06, 0.10, flatToSun);
   if (sun > 0.0) sun *= sunReaching(vRelative, n);
   float hollow = mix(0.62, 1.0, smoothstep(-1.0, 0.1, vRidge)) * mix(0.82 + 0.18 * smoothstep(-0.5, 0.3, stone.shape + fine.shape * 0.5), 1.0, coverB.y);
   float upward = bumped.y * 0.5 + 0.5;
