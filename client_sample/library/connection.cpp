@@ -72,7 +72,9 @@ class Connection::State : public std::enable_shared_from_this<State> {
     expire_in(std::chrono::seconds(2));
   }
 
-  /// The last step: every way the connection can end comes by here once.
+  /// The last step: every way the connection can end comes by here once. By value: what abandon() lets go of may own
+  /// the caller's.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
   void end(ClientError error) {
     if (is_over_) return;
     const Handlers handlers = std::move(handlers_);
@@ -90,7 +92,7 @@ class Connection::State : public std::enable_shared_from_this<State> {
   }
 
  private:
-  void connect(tcp::resolver::results_type found) {
+  void connect(const tcp::resolver::results_type& found) {
     asio::async_connect(
         socket_, found, [self = shared_from_this()](const asio::error_code& error, const tcp::endpoint&) {
           if (self->is_over_) return;

@@ -28,7 +28,7 @@ ChunkFeed::ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, st
     : net_(net),
       writer_(writer),
       world_(world),
-      executor_(executor),
+      executor_(std::move(executor)),
       owner_(std::move(owner)),
       viewer_(net.worlds[world]->shape(), credit_bytes) {
   net_.sessions.fetch_add(1, std::memory_order_relaxed);
