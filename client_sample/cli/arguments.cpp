@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client_sample/cli/commands.hpp"
+#include "core/map/map_view.hpp"
 
 namespace talus::cli {
 namespace {
@@ -16,6 +17,8 @@ constexpr const char* kFooter = R"(Examples:
   talus fly --from 0,400,0 --to 2000,400,0 --speed 50 --seconds 60
   talus fly --viewers 50 --seconds 300 --json
   talus fly --until-complete --far 2000 --seconds 60     # time to a complete view
+  talus map --area 0,0,64 -o map.png                     # 64 km around the origin
+  talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
   talus manifest check worlds/alps.toml
 
 Exit codes:
@@ -37,6 +40,7 @@ struct Arguments {
   GetOptions get;
   InfoOptions info;
   FlyOptions fly;
+  MapOptions map;
   std::string checked;
   std::string explained;
   std::function<ExitCode()> command;
@@ -83,6 +87,24 @@ void add_fly(CLI::App& app, Arguments& arguments) {
   fly->callback([&arguments] { arguments.command = [&arguments] { return cli::fly(arguments.fly); }; });
 }
 
+std::vector<std::string> layer_names() {
+  return {kMapLayerNames.begin(), kMapLayerNames.end()};
+}
+
+void add_map(CLI::App& app, Arguments& arguments) {
+  MapOptions& options = arguments.map;
+  CLI::App* map = app.add_subcommand("map", "Draw a square of a world from above as a PNG; no server needed");
+  map->add_option("--world", options.manifest, "TOML file of the world; else the default world");
+  map->add_option("--area", options.area, "x,z,km: centre in metres, edge in kilometres")->required();
+  map->add_option("--size", options.size, "pixels along each edge")->capture_default_str()->check(CLI::Range(16, 8192));
+  map->add_option("--layer", options.layer, "what to show")->capture_default_str()->check(CLI::IsMember(layer_names()));
+  map->add_option("--contours", options.contour_m, "metres between contour lines; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  map->add_option("-o,--output", options.output, "PNG file")->required();
+  map->callback([&arguments] { arguments.command = [&arguments] { return cli::map(arguments.map); }; });
+}
+
 void add_manifest(CLI::App& app, Arguments& arguments) {
   CLI::App* manifest = app.add_subcommand("manifest", "Check or explain the TOML file of a world");
   manifest->require_subcommand(1);
@@ -106,6 +128,7 @@ int run(int argc, char** argv) {
   add_get(app, arguments);
   add_info(app, arguments);
   add_fly(app, arguments);
+  add_map(app, arguments);
   add_manifest(app, arguments);
   try {
     app.parse(argc, argv);

@@ -48,6 +48,16 @@ struct FlyOptions {
 };
 ExitCode fly(const FlyOptions& options);
 
+struct MapOptions {
+  std::string manifest;  ///< file; empty: the default world
+  std::string area;      ///< x,z of the centre in metres and the edge in km
+  int size = 1024;       ///< pixels along each edge
+  std::string layer = "shaded";
+  double contour_m = 0;
+  std::string output;
+};
+ExitCode map(const MapOptions& options);
+
 ExitCode manifest_check(const std::string& file);
 /// Prints a manifest with every parameter, its unit, limits and meaning; the default world's without a file.
 ExitCode manifest_explain(const std::string& file);

@@ -49,14 +49,14 @@ bool store_file(const std::string& path, std::string_view bytes) {
   return is_written && is_closed;
 }
 
-std::optional<Manifest> load_manifest(const std::string& path) {
+std::expected<Manifest, ExitCode> load_manifest(const std::string& path) {
   if (path.empty()) return Manifest{};
   const auto text = load_file(path, protocol::kTomlBytesMax);
-  if (!text) return std::nullopt;
+  if (!text) return std::unexpected(kFailed);
   auto manifest = protocol::parse_manifest(*text, path);
   if (manifest) return std::move(*manifest);
   for (const protocol::TextFault& fault : manifest.error()) fmt::print(stderr, "{}\n", protocol::describe(fault));
-  return std::nullopt;
+  return std::unexpected(kBadManifest);
 }
 
 }  // namespace talus::cli

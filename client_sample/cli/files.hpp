@@ -1,10 +1,12 @@
 // Whole files in and out. Says on standard error what failed.
 #pragma once
 
+#include <expected>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "client_sample/cli/exit_code.hpp"
 #include "core/world/manifest.hpp"
 
 namespace talus::cli {
@@ -13,7 +15,8 @@ std::optional<std::string> load_file(const std::string& path, std::size_t bytes_
 /// "-" is standard output.
 bool store_file(const std::string& path, std::string_view bytes);
 
-/// Every fault is printed. An empty path is the default world.
-std::optional<Manifest> load_manifest(const std::string& path);
+/// Every fault is printed. An empty path is the default world. kFailed: the file cannot be read; kBadManifest: its
+/// content is no world.
+std::expected<Manifest, ExitCode> load_manifest(const std::string& path);
 
 }  // namespace talus::cli

@@ -53,7 +53,7 @@ ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkM
 
 ExitCode get_local(const GetOptions& options, const ChunkKey& key) {
   const auto manifest = load_manifest(options.manifest);
-  if (!manifest) return kBadManifest;
+  if (!manifest) return manifest.error();
   const WorldFunction world(*manifest);
   ChunkScratch scratch;
   ChunkMesh mesh;

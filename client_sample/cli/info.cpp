@@ -46,14 +46,14 @@ ExitCode info(const InfoOptions& options) {
 
 ExitCode manifest_check(const std::string& file) {
   const auto manifest = load_manifest(file);
-  if (!manifest) return kBadManifest;
+  if (!manifest) return manifest.error();
   fmt::print("{}: a sound world, \"{}\", hash {}\n", file, manifest->name, protocol::world_hash(*manifest));
   return kDone;
 }
 
 ExitCode manifest_explain(const std::string& file) {
   const auto manifest = load_manifest(file);
-  if (!manifest) return kBadManifest;
+  if (!manifest) return manifest.error();
   fmt::print("{}", protocol::format_manifest(*manifest));
   return kDone;
 }

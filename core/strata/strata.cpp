@@ -116,6 +116,10 @@ constexpr float kWindow_m = 45.0f;
 /// Edge of the patches in which a layer keeps one of its rocks, in metres.
 constexpr double kPatch_m = 140.0;
 
+float unit(std::uint64_t bits) {
+  return static_cast<float>(bits >> 40) * 0x1p-24f;
+}
+
 }  // namespace
 
 Strata::Strata(const StrataControls& controls) : controls_(controls) {
@@ -161,21 +165,28 @@ void Strata::ledge_row(const StrataRow& row, const float* relief_x, const float*
    slope_x, slope_z);
 }
 
-Material Strata::rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
+std::uint64_t Strata::patch_at(float stack_m, glm::dvec2 place_m) const {
   // Patches have crooked borders because the deformation shifts their lattice.
   const double shift = static_cast<double>(stack_m) * 2.0;
   const auto cell = [&](double at) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at / kPatch_m)));
   };
-  const std::uint64_t patch = mix64(mix64(controls_.seed, cell(place_m.x + shift)), cell(place_m.y - shift));
-  const auto unit = [](std::uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; };
+  return mix64(mix64(controls_.seed, cell(place_m.x + shift)), cell(place_m.y - shift));
+}
+
+LayerPlace Strata::layer_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
+  const std::uint64_t patch = patch_at(stack_m, place_m);
   const int last = sets() - 1;
   const int low = std::clamp(static_cast<int>(choice), 0, last);
   const float fraction = choice - static_cast<float>(low);
   const int chosen = 0.35f + 0.3f * unit(mix64(patch, 1)) < fraction ? std::min(low + 1, last) : low;
-  const LayerSet& rocks = set(chosen);
-  const int index = rocks.index_at(stack_m - height_m);
-  return rocks.rock_at(index, unit(mix64(patch, static_cast<std::uint64_t>(index) + 2)));
+  return {chosen, set(chosen).index_at(stack_m - height_m)};
+}
+
+Material Strata::rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
+  const LayerPlace place = layer_at(stack_m, choice, height_m, place_m);
+  const std::uint64_t patch = patch_at(stack_m, place_m);
+  return set(place.set).rock_at(place.index, unit(mix64(patch, static_cast<std::uint64_t>(place.index) + 2)));
 }
 
 }  // namespace talus

@@ -32,6 +32,12 @@ struct StrataRow {
   std::size_t width;
 };
 
+/// One layer of one set.
+struct LayerPlace {
+  int set = 0;
+  int index = 0;
+};
+
 class Strata {
  public:
   explicit Strata(const StrataControls& controls);
@@ -47,10 +53,13 @@ class Strata {
   void ledge_row(const StrataRow& row, const float* relief_x, const float* relief_z, float* height_m, float* slope_x,
                  float* slope_z) const;
 
-  /// The rock at height `height_m` of a column.
+  /// The layer at height `height_m` of a column.
+  LayerPlace layer_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const;
+  /// Its rock there.
   Material rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const;
 
  private:
+  std::uint64_t patch_at(float stack_m, glm::dvec2 place_m) const;
   void tabulate(const LayerSet& set);
 
   StrataControls controls_;

@@ -163,4 +163,9 @@ Material WorldFunction::rock(float stack_m, float choice, float height_m, glm::i
   return terms_->strata->rock_at(stack_m, choice, height_m, place_m);
 }
 
+LayerPlace WorldFunction::layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
+  const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
+  return terms_->strata->layer_at(stack_m, choice, height_m, place_m);
+}
+
 }  // namespace talus

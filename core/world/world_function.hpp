@@ -18,6 +18,7 @@
 #include "core/grid/chunk_key.hpp"
 #include "core/grid/column_grid.hpp"
 #include "core/strata/material.hpp"
+#include "core/strata/strata.hpp"
 #include "core/world/manifest.hpp"
 
 namespace talus {
@@ -61,6 +62,8 @@ class WorldFunction {
   Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;
   /// The rock of the layer at `height_m` in a column of this stack and choice.
   Material rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
+  /// That layer.
+  LayerPlace layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
 
   struct Terms;  ///< the manifest as the kernels want it (core/world/terms.hpp)
 

@@ -8,6 +8,7 @@
 
 #include "client_sample/cli/arguments.hpp"
 #include "client_sample/cli/exit_code.hpp"
+#include "client_sample/cli/map_picture.hpp"
 #include "client_sample/cli/mesh_file.hpp"
 #include "client_sample/cli/text.hpp"
 
@@ -118,13 +119,37 @@ TEST(Cli, SaysByItsExitCodeWhatWentWrong) {
   EXPECT_EQ(talus({"--help"}), kDone);
 }
 
+TEST(Cli, DrawsMapsOfAnySquareAndSize) {
+  const Scratch scratch;
+  const std::string out = scratch / "m.png";
+  for (const char* area : {"0,0,64", "-1e9,1e9,0.05", "1234.5,-77.25,3.3"}) {
+    EXPECT_EQ(talus({"map", "--area", area, "--size", "100", "-o", out}), kDone) << area;
+    EXPECT_EQ(content(out).substr(1, 3), "PNG") << area;
+  }
+  for (const char* area : {"", "0,0", "0,0,0", "0,0,5000", "2e10,0,1", "nan,0,1"}) {
+    EXPECT_EQ(talus({"map", "--area", area, "-o", out}), kUsage) << area;
+  }
+  EXPECT_EQ(talus({"map", "--area", "0,0,1", "--layer", "shadow", "-o", out}), kUsage);
+  EXPECT_EQ(talus({"map", "--area", "0,0,1", "--size", "16", "-o", scratch / "no/such/folder.png"}), kFailed);
+  EXPECT_EQ(talus({"map", "--area", "0,0,1", "-o", out, "--world", scratch / "absent.toml"}), kFailed);
+}
+
+TEST(MapPicture, IsTheLatticeItselfWherePixelsFitIt) {
+  const WorldFunction world{Manifest()};
+  const Picture picture = draw_picture(world, {{512, 512}, 1024}, 64, {});
+  MapScratch scratch;
+  std::vector<std::uint8_t> raster(picture.rgb.size());
+  draw_map(world, {0, 0, 16, 2, 64, 64}, {}, scratch, raster);
+  EXPECT_EQ(picture.rgb, raster);
+}
+
 TEST(Cli, ChecksAndExplainsManifests) {
   const Scratch scratch;
   std::ofstream(scratch / "good.toml") << "name = \"alps\"\n";
   std::ofstream(scratch / "bad.toml") << "nmae = \"alps\"\n";
   EXPECT_EQ(talus({"manifest", "check", scratch / "good.toml"}), kDone);
   EXPECT_EQ(talus({"manifest", "check", scratch / "bad.toml"}), kBadManifest);
-  EXPECT_EQ(talus({"manifest", "check", scratch / "absent.toml"}), kBadManifest);
+  EXPECT_EQ(talus({"manifest", "check", scratch / "absent.toml"}), kFailed);
   EXPECT_EQ(talus({"manifest", "explain"}), kDone);
   EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / "c.drc", "--local", "--manifest", scratch / "bad.toml"}),
             kBadManifest);

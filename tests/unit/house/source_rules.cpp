@@ -35,6 +35,7 @@ const std::vector<Room>& rooms() {
     below.insert(below.end(), {"core/volume", "core/edit"});
     out.push_back({"core/world", below});
     below.push_back("core/world");
+    out.push_back({"core/map", below});
     out.push_back({"core/mesh", below});
 
     out.push_back({"protocol", {"core"}});
@@ -70,6 +71,7 @@ const std::vector<Library>& libraries() {
   static const std::vector<Library> all{
       {"asio", {"server/net", "server/app", "client_sample/library", "client_sample/cli", "client_sample/load"}, 0},
       {"draco/", {"protocol"}, 2},
+      {"png.h", {"protocol"}, 1},
       {"flatbuffers/", {"protocol"}, 2},
       {"talus_generated.h", {"protocol"}, 2},
       {"zstd.h", {"protocol", "server/storage"}, 0},
@@ -93,7 +95,7 @@ constexpr std::array<std::string_view, 14> kNeverInCore{
 
 constexpr std::array<std::string_view, 5> kThreadStarters{"server/schedule/job_pool.cpp", "server/net/server.cpp",
                                                           "server/app/main.cpp", "client_sample/library/connection.cpp",
-                                                          "client_sample/cli/fly.cpp"};
+                                                          "client_sample/cli/strips.cpp"};
 
 constexpr std::size_t kSourceLinesMax = 400;
 constexpr std::size_t kHeaderLinesMax = 200;

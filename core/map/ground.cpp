@@ -1,0 +1,134 @@
+#include "core/map/ground.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/check.hpp"
+
+namespace talus {
+namespace {
+
+/// Columns along a block's edge: four blocks of this size fill a tile of 256 pixels.
+constexpr int kBlockColumns = 128;
+static_assert(kBlockColumns <= kColumnsMax);
+
+/// Colours of single columns.
+class Painter {
+ public:
+  Painter(const WorldFunction& world, MapLayer layer) : world_(world), layer_(layer), land_(world.manifest()) {
+    const glm::dvec2 range = world.height_range_m();
+    low_m_ = static_cast<float>(range.x);
+    span_m_ = static_cast<float>(range.y - range.x);
+  }
+
+  glm::vec3 colour(const ColumnBlock& b, int i, int k) const {
+    const std::size_t at = static_cast<std::size_t>(k) * b.stride + static_cast<std::size_t>(i);
+    const float height = b.height_m[at];
+    switch (layer_) {
+      case MapLayer::kShaded:
+        return land_.land(height, material(b, i, k, at)) * (1.0f + 0.14f * b.ridge[at] * b.hilliness[at]);
+      case MapLayer::kHeight:
+        return heat_light((height - low_m_) / span_m_);
+      case MapLayer::kSlope:
+        // Vertical is bright: 1 - the cosine of the slope's angle would hide gentle slopes.
+        return heat_light(std::sqrt(1.0f - b.steepness[at] * b.steepness[at]));
+      case MapLayer::kMaterials:
+        return light_of(info_of(material(b, i, k, at)).colour_rgb);
+      case MapLayer::kLayers: {
+        const LayerPlace place = world_.layer(b.stack_m[at], b.choice[at], height, column_voxel(b, i, k));
+        return category_light(static_cast<std::uint64_t>(place.set) * kLayers +
+                              static_cast<std::uint64_t>(place.index));
+      }
+      case MapLayer::kRidge: {
+        const float v = 0.5f + 0.5f * b.ridge[at];
+        return glm::vec3(v * v);
+      }
+      case MapLayer::kHilliness:
+        return heat_light(b.hilliness[at]);
+    }
+    return {};
+  }
+
+ private:
+  static glm::i64vec2 column_voxel(const ColumnBlock& b, int i, int k) {
+    return {b.grid.x_voxel + i * b.grid.step_voxel, b.grid.z_voxel + k * b.grid.step_voxel};
+  }
+
+  Material material(const ColumnBlock& b, int i, int k, std::size_t at) const {
+    const glm::i64vec2 voxel = column_voxel(b, i, k);
+    const Material cover = world_.cover(b.height_m[at], b.steepness[at], b.ridge[at], b.hilliness[at], voxel);
+    return cover == Material::kRock ? world_.rock(b.stack_m[at], b.choice[at], b.height_m[at], voxel) : cover;
+  }
+
+  const WorldFunction& world_;
+  MapLayer layer_;
+  LandPalette land_;
+  float low_m_ = 0;
+  float span_m_ = 1;
+};
+
+/// Adds the columns of a block to the pixels they lie in; (i0, k0) is the block's first column within the view.
+void add_block(const Painter& painter, MapLayer layer, const ColumnBlock& b, int samples, int i0, int k0, Ground& out) {
+  for (int k = 0; k < b.grid.depth; ++k) {
+    const std::size_t row = static_cast<std::size_t>((k0 + k) / samples) * out.stride;
+    for (int i = 0; i < b.grid.width; ++i) {
+      const std::size_t pixel = row + static_cast<std::size_t>((i0 + i) / samples);
+      const float height = b.height_m[static_cast<std::size_t>(k) * b.stride + static_cast<std::size_t>(i)];
+      out.height_m[pixel] += height;
+      if (has_sea(layer) && height < 0.0f) {
+        out.wet[pixel] += 1.0f;
+      } else {
+        out.colour[pixel] += painter.colour(b, i, k);
+      }
+    }
+  }
+}
+
+/// Sums become means.
+void divide(int samples, Ground& out) {
+  const auto all = static_cast<float>(samples * samples);
+  for (std::size_t pixel = 0; pixel < out.wet.size(); ++pixel) {
+    const float dry = all - out.wet[pixel];
+    out.height_m[pixel] /= all;
+    out.wet[pixel] /= all;
+    if (dry > 0.0f) out.colour[pixel] /= dry;
+  }
+}
+
+}  // namespace
+
+void gather_ground(const WorldFunction& world, const MapView& view, MapLayer layer, int margin, MapScratch& scratch) {
+  TALUS_CHECK(view.width > 0 && view.height > 0 && view.samples > 0);
+  TALUS_CHECK(view.pixel_voxels % view.samples == 0);
+  const int width = view.width + 2 * margin;
+  const int height = view.height + 2 * margin;
+  Ground& out = scratch.ground;
+  out.margin = margin;
+  out.stride = static_cast<std::size_t>(width);
+  const std::size_t pixels = out.stride * static_cast<std::size_t>(height);
+  out.height_m.assign(pixels, 0.0f);
+  out.wet.assign(pixels, 0.0f);
+  out.colour.assign(pixels, glm::vec3(0.0f));
+
+  const Painter painter(world, layer);
+  const std::int64_t step = view.pixel_voxels / view.samples;
+  const int columns = width * view.samples;
+  const int rows = height * view.samples;
+  for (int k0 = 0; k0 < rows; k0 += kBlockColumns) {
+    for (int i0 = 0; i0 < columns; i0 += kBlockColumns) {
+      ColumnGrid grid;
+      grid.x_voxel = view.x_voxel - margin * view.pixel_voxels + i0 * step;
+      grid.z_voxel = view.z_voxel - margin * view.pixel_voxels + k0 * step;
+      grid.step_voxel = step;
+      grid.width = std::min(kBlockColumns, columns - i0);
+      grid.depth = std::min(kBlockColumns, rows - k0);
+      grid.voxel_m = world.voxel_m();
+      world.columns(grid, scratch.columns);
+      add_block(painter, layer, scratch.columns, view.samples, i0, k0, out);
+    }
+  }
+  divide(view.samples, out);
+}
+
+}  // namespace talus

@@ -1,0 +1,93 @@
+#include "core/map/palette.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/check.hpp"
+#include "core/base/hash.hpp"
+
+namespace talus {
+namespace {
+
+glm::vec3 mix(const glm::vec3& a, const glm::vec3& b, float t) {
+  return a + (b - a) * t;
+}
+
+constexpr std::array kSea{
+    ColourStop{0.0f, light_of(0x8CC4CC)},    ColourStop{6.0f, light_of(0x6DB0C6)},
+    ColourStop{40.0f, light_of(0x4288B2)},   ColourStop{130.0f, light_of(0x2A6299)},
+    ColourStop{300.0f, light_of(0x1C477F)},  ColourStop{650.0f, light_of(0x133366)},
+    ColourStop{2000.0f, light_of(0x0B2049)},
+};
+
+constexpr std::array kHeat{
+    ColourStop{0.0f, light_of(0x0B0724)},  ColourStop{0.25f, light_of(0x57106E)}, ColourStop{0.5f, light_of(0xBC3754)},
+    ColourStop{0.75f, light_of(0xF98C0A)}, ColourStop{1.0f, light_of(0xFCFFA4)},
+};
+
+/// How much of a material's own colour shows against the tint of its height.
+float weight_of(Material material) {
+  switch (material) {
+    case Material::kSnow:
+      return 1.0f;
+    case Material::kSand:
+      return 0.8f;
+    case Material::kGrass:
+      return 0.3f;
+    case Material::kSoil:
+    case Material::kStreamBed:
+      return 0.45f;
+    case Material::kScree:
+      return 0.6f;
+    default:
+      return 0.75f;
+  }
+}
+
+}  // namespace
+
+glm::vec3 ramp(std::span<const ColourStop> stops, float at) {
+  TALUS_CHECK(!stops.empty());
+  const auto above = std::ranges::upper_bound(stops, at, {}, &ColourStop::at);
+  if (above == stops.begin()) return stops.front().light;
+  if (above == stops.end()) return stops.back().light;
+  const ColourStop& low = *(above - 1);
+  return mix(low.light, above->light, (at - low.at) / (above->at - low.at));
+}
+
+glm::vec3 sea_light(float depth_m) {
+  return ramp(kSea, depth_m);
+}
+
+glm::vec3 heat_light(float share) {
+  return ramp(kHeat, share);
+}
+
+glm::vec3 category_light(std::uint64_t number) {
+  const std::uint64_t bits = mix64(0x7A1, number);
+  const auto channel = [&](int shift) {
+    const float v = 0.25f + 0.7f * static_cast<float>(bits >> shift & 0xFFU) / 255.0f;
+    return v * v;
+  };
+  return {channel(0), channel(8), channel(16)};
+}
+
+LandPalette::LandPalette(const Manifest& manifest) {
+  // The lines are free parameters; the ramp needs them in order and apart.
+  const float grass_m = std::clamp(static_cast<float>(parameter(manifest, "cover.grass_line_m")), 100.0f, 4000.0f);
+  const float snow_m = std::max(static_cast<float>(parameter(manifest, "cover.snow_line_m")), grass_m * 1.15f);
+  stops_ = {ColourStop{0.0f, light_of(0xB9B487)},
+            ColourStop{5.0f, light_of(0x93A765)},
+            ColourStop{40.0f, light_of(0x6F9A50)},
+            ColourStop{grass_m * 0.35f + 20.0f, light_of(0x7FA056)},
+            ColourStop{grass_m * 0.75f, light_of(0xA9A868)},
+            ColourStop{grass_m, light_of(0xA98F65)},
+            ColourStop{0.5f * (grass_m + snow_m), light_of(0x8F7A64)},
+            ColourStop{snow_m * 1.3f, light_of(0xA39A94)}};
+}
+
+glm::vec3 LandPalette::land(float height_m, Material material) const {
+  return mix(tint(height_m), light_of(info_of(material).colour_rgb), weight_of(material));
+}
+
+}  // namespace talus
