@@ -1,55 +1,12 @@
 #include "core/mesh/build_chunk.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "core/base/check.hpp"
+#include "core/mesh/vertex_maker.hpp"
 
 namespace talus {
 namespace {
-
-/// Densities of one chunk, addressed by sample, halo included (-1 .. cells + 1 along x and z, the sampled layers along
-/// y).
-class Samples {
- public:
-  Samples(const DensityBox& box, const float* density, int first_layer)
-      : row_(static_cast<std::ptrdiff_t>(box.stride)), layer_(static_cast<std::ptrdiff_t>(box.stride * box.depth)) {
-    origin_ = density - first_layer * layer_ + row_ + 1;
-  }
-
-  const float* row(int y, int z) const { return origin_ + y * layer_ + z * row_; }
-  float at(int x, int y, int z) const { return row(y, z)[x]; }
-
-  /// Gradient in halves of a cell by central differences. Every sample next to a crossed edge has its neighbours
-  /// sampled.
-  glm::vec3 gradient(int x, int y, int z) const {
-    const float* p = row(y, z) + x;
-    return {p[1] - p[-1], p[layer_] - p[-layer_], p[row_] - p[-row_]};
-  }
-
- private:
-  std::ptrdiff_t row_;
-  std::ptrdiff_t layer_;
-  const float* origin_;  ///< sample (0, 0, 0), which lies outside the array when its layer is not sampled
-};
-
-struct LayerInterval {
-  int first;  ///< of the samples -1 .. cells + 1
-  int count;
-};
-
-/// Layers of samples that the surface can touch, with two more on either side: one whose sign is plain, one for
-/// normals.
-LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells) {
-  const double step_m = static_cast<double>(columns.grid.step_voxel) * columns.grid.voxel_m;
-  const double y_m = static_cast<double>(y_voxel) * columns.grid.voxel_m;
-  const auto layer = [&](float height_m) { return std::floor((static_cast<double>(height_m) - y_m) / step_m); };
-  const double limit = cells + 1;
-  const auto first = static_cast<int>(std::clamp(layer(columns.height_low_m) - 2.0, -1.0, limit));
-  const auto last = static_cast<int>(std::clamp(layer(columns.height_high_m) + 3.0, -1.0, limit));
-  return {first, last - first + 1};
-}
 
 /// Sign words of the (cells + 1)^3 samples. Layers under the sampled ones are rock, those above air.
 void read_signs(const Samples& samples, const LayerInterval& layers, SignRows& out) {
@@ -71,64 +28,23 @@ void read_signs(const Samples& samples, const LayerInterval& layers, SignRows& o
 }
 
 /// Makes the vertices of one chunk, in the order of its crossed edges, in arrays that are long enough.
-class VertexMaker {
+class VertexWriter {
  public:
-  VertexMaker(const WorldFunction& world, const ColumnBlock& columns, const Samples& samples, std::int64_t y_voxel,
-              ChunkMesh& out)
-      : world_(world), columns_(columns), samples_(samples), out_(out) {
-    step_m_ = static_cast<float>(static_cast<double>(columns.grid.step_voxel) * columns.grid.voxel_m);
-    y_m_ = static_cast<float>(static_cast<double>(y_voxel) * columns.grid.voxel_m);
-  }
+  VertexWriter(const VertexMaker& maker, ChunkMesh& out) : maker_(maker), out_(out) {}
 
-  void operator()(const CrossedEdge& e) {
-    const std::array<int, 3> to{e.x + (e.axis == 0 ? 1 : 0), e.y + (e.axis == 1 ? 1 : 0), e.z + (e.axis == 2 ? 1 : 0)};
-    const int step = crossing_step(samples_.at(e.x, e.y, e.z), samples_.at(to[0], to[1], to[2]));
-    const float t = static_cast<float>(step) / static_cast<float>(kStepsPerCell);
-
-    glm::u16vec3 position{e.x * kStepsPerCell, e.y * kStepsPerCell, e.z * kStepsPerCell};
-    position[e.axis] = static_cast<std::uint16_t>(position[e.axis] + step);
-    const glm::vec3 from_gradient = samples_.gradient(e.x, e.y, e.z);
-    const glm::vec3 to_gradient = samples_.gradient(to[0], to[1], to[2]);
-    const glm::vec3 normal = unit(from_gradient + (to_gradient - from_gradient) * t);
-
-    const std::size_t from_column = column(e.x, e.z);
-    const std::size_t to_column = column(to[0], to[2]);
-    const float ridge = columns_.ridge[from_column] + (columns_.ridge[to_column] - columns_.ridge[from_column]) * t;
-    const float height_m = y_m_ + (static_cast<float>(position.y) / static_cast<float>(kStepsPerCell)) * step_m_;
-    const glm::i64vec2 column_voxel{columns_.grid.x_voxel + (e.x + 1) * columns_.grid.step_voxel,
-                                    columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
-    Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
-
-    if (material == Material::kRock) {
-      const float stack_m =
-          columns_.stack_m[from_column] + (columns_.stack_m[to_column] - columns_.stack_m[from_column]) * t;
-      material = world_.rock(stack_m, columns_.choice[from_column], height_m, column_voxel);
-    }
-    out_.positions[next_] = position;
-    out_.normals[next_] = normal;
-    out_.materials[next_] = static_cast<std::uint8_t>(material);
-    out_.ridges[next_] = static_cast<std::uint8_t>(std::clamp(ridge, -1.0f, 1.0f) * 127.0f + 128.0f);
+  void operator()(const CrossedEdge& edge) {
+    const MeshVertex vertex = maker_(edge);
+    out_.positions[next_] = vertex.position;
+    out_.normals[next_] = vertex.normal;
+    out_.materials[next_] = vertex.material;
+    out_.ridges[next_] = vertex.ridge;
     ++next_;
   }
 
  private:
-  static glm::vec3 unit(const glm::vec3& v) {
-    const float length2 = v.x * v.x + v.y * v.y + v.z * v.z;
-    if (!(length2 > 0.0f)) return {0.0f, 1.0f, 0.0f};
-    const float inverse = 1.0f / std::sqrt(length2);
-    return {v.x * inverse, v.y * inverse, v.z * inverse};
-  }
-  std::size_t column(int x, int z) const {
-    return static_cast<std::size_t>(z + 1) * columns_.stride + static_cast<std::size_t>(x + 1);
-  }
-
-  const WorldFunction& world_;
-  const ColumnBlock& columns_;
-  const Samples& samples_;
+  const VertexMaker& maker_;
   ChunkMesh& out_;
   std::size_t next_ = 0;
-  float step_m_ = 0;
-  float y_m_ = 0;
 };
 
 }  // namespace
@@ -172,7 +88,8 @@ ChunkKind mesh_chunk(const WorldFunction& world, const ChunkKey& key, const Dens
   out.normals.resize(scratch.edges.vertices);
   out.materials.resize(scratch.edges.vertices);
   out.ridges.resize(scratch.edges.vertices);
-  for_each_crossed_edge(scratch.signs, scratch.edges, VertexMaker(world, scratch.columns, samples, y_voxel, out));
+  const VertexMaker maker(world, scratch.columns, samples, y_voxel);
+  for_each_crossed_edge(scratch.signs, scratch.edges, VertexWriter(maker, out));
   return ChunkKind::kMesh;
 }
 

@@ -1,0 +1,64 @@
+#include "core/mesh/vertex_maker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+glm::vec3 unit(const glm::vec3& v) {
+  const float length2 = v.x * v.x + v.y * v.y + v.z * v.z;
+  if (!(length2 > 0.0f)) return {0.0f, 1.0f, 0.0f};
+  const float inverse = 1.0f / std::sqrt(length2);
+  return {v.x * inverse, v.y * inverse, v.z * inverse};
+}
+
+}  // namespace
+
+LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells) {
+  const double step_m = static_cast<double>(columns.grid.step_voxel) * columns.grid.voxel_m;
+  const double y_m = static_cast<double>(y_voxel) * columns.grid.voxel_m;
+  const auto layer = [&](float height_m) { return std::floor((static_cast<double>(height_m) - y_m) / step_m); };
+  const double limit = cells + 1;
+  const auto first = static_cast<int>(std::clamp(layer(columns.height_low_m) - 2.0, -1.0, limit));
+  const auto last = static_cast<int>(std::clamp(layer(columns.height_high_m) + 3.0, -1.0, limit));
+  return {first, last - first + 1};
+}
+
+VertexMaker::VertexMaker(const WorldFunction& world, const ColumnBlock& columns, const Samples& samples,
+                         std::int64_t y_voxel)
+    : world_(world), columns_(columns), samples_(samples) {
+  step_m_ = static_cast<float>(static_cast<double>(columns.grid.step_voxel) * columns.grid.voxel_m);
+  y_m_ = static_cast<float>(static_cast<double>(y_voxel) * columns.grid.voxel_m);
+}
+
+MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
+  const std::array<int, 3> to{e.x + (e.axis == 0 ? 1 : 0), e.y + (e.axis == 1 ? 1 : 0), e.z + (e.axis == 2 ? 1 : 0)};
+  const int step = crossing_step(samples_.at(e.x, e.y, e.z), samples_.at(to[0], to[1], to[2]));
+  const float t = static_cast<float>(step) / static_cast<float>(kStepsPerCell);
+
+  glm::u16vec3 position{e.x * kStepsPerCell, e.y * kStepsPerCell, e.z * kStepsPerCell};
+  position[e.axis] = static_cast<std::uint16_t>(position[e.axis] + step);
+  const glm::vec3 from_gradient = samples_.gradient(e.x, e.y, e.z);
+  const glm::vec3 to_gradient = samples_.gradient(to[0], to[1], to[2]);
+  const glm::vec3 normal = unit(from_gradient + (to_gradient - from_gradient) * t);
+
+  const std::size_t from_column = column(e.x, e.z);
+  const std::size_t to_column = column(to[0], to[2]);
+  const float ridge = columns_.ridge[from_column] + (columns_.ridge[to_column] - columns_.ridge[from_column]) * t;
+  const float height_m = y_m_ + (static_cast<float>(position.y) / static_cast<float>(kStepsPerCell)) * step_m_;
+  const glm::i64vec2 column_voxel{columns_.grid.x_voxel + (e.x + 1) * columns_.grid.step_voxel,
+                                  columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
+  Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
+
+  if (material == Material::kRock) {
+    const float stack_m =
+        columns_.stack_m[from_column] + (columns_.stack_m[to_column] - columns_.stack_m[from_column]) * t;
+    material = world_.rock(stack_m, columns_.choice[from_column], height_m, column_voxel);
+  }
+  return {position, normal, static_cast<std::uint8_t>(material),
+          static_cast<std::uint8_t>(std::clamp(ridge, -1.0f, 1.0f) * 127.0f + 128.0f)};
+}
+
+}  // namespace talus
