@@ -26,7 +26,7 @@ target_compile_options(talus_compile INTERFACE
   -fno-math-errno)
 # SIMD targets of every kernel: the scalar fallback, SSE4, AVX2 and AVX-512, chosen at run time; SSSE3 is older than any host.
 target_compile_definitions(talus_compile INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
-target_include_directories(talus_compile INTERFACE "${PROJECT_SOURCE_DIR}")
+target_include_directories(talus_compile INTERFACE "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>")
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 reports these inside inlined standard library code, where there is nothing to repair.
