@@ -17,8 +17,9 @@ struct OctaveRow {
   const Axis* x;
   float fraction_z;
   std::array<std::uint32_t, 2> hash_z;
-  float amplitude;           ///< of the value; includes kNoiseScale and the 2^-15 of the gradients
-  float amplitude_per_cell;  ///< of the slope: amplitude * cells per metre
+  float amplitude;          ///< of the value; includes kNoiseScale and the 2^-15 of the gradients
+  float slope_amplitude_x;  ///< of the slope: amplitude * cells per metre
+  float slope_amplitude_z;
 };
 
 }  // namespace talus
@@ -70,7 +71,8 @@ void add_octave(const OctaveRow& row, std::size_t width, float* HWY_RESTRICT val
   const auto z0 = hn::Set(du, row.hash_z[0]);
   const auto z1 = hn::Set(du, row.hash_z[1]);
   const V amplitude = hn::Set(d, row.amplitude);
-  const V amplitude_slope = hn::Set(d, row.amplitude_per_cell);
+  const V amplitude_x = hn::Set(d, row.slope_amplitude_x);
+  const V amplitude_z = hn::Set(d, row.slope_amplitude_z);
 
   for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     const V tx = hn::LoadU(d, &row.x->fraction[i]);
@@ -105,8 +107,8 @@ void add_octave(const OctaveRow& row, std::size_t width, float* HWY_RESTRICT val
     const V nz = hn::Add(blend(gz00, gz10, gz01, gz11), hn::Mul(dw, across_z));
 
     hn::StoreU(hn::Add(hn::LoadU(d, value + i), hn::Mul(n, amplitude)), d, value + i);
-    hn::StoreU(hn::Add(hn::LoadU(d, slope_x + i), hn::Mul(nx, amplitude_slope)), d, slope_x + i);
-    hn::StoreU(hn::Add(hn::LoadU(d, slope_z + i), hn::Mul(nz, amplitude_slope)), d, slope_z + i);
+    hn::StoreU(hn::Add(hn::LoadU(d, slope_x + i), hn::Mul(nx, amplitude_x)), d, slope_x + i);
+    hn::StoreU(hn::Add(hn::LoadU(d, slope_z + i), hn::Mul(nz, amplitude_z)), d, slope_z + i);
   }
 }
 
@@ -129,7 +131,7 @@ double noise_bound(const FractalNoise& noise) {
 
 void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<float> value, std::span<float> slope_x,
                    std::span<float> slope_z) {
-  TALUS_CHECK(noise.octaves >= 1 && noise.octaves <= kNoiseOctavesMax);
+  TALUS_CHECK(noise.octaves >= 1 && noise.octaves <= kNoiseOctavesMax && noise.stretch_z > 0);
   TALUS_CHECK(grid.width >= 1 && grid.width <= kColumnsMax && grid.depth >= 1 && grid.depth <= kColumnsMax);
   const std::size_t stride = row_stride(grid);
   const std::size_t count = sample_count(grid);
@@ -141,9 +143,10 @@ void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<
   double amplitude = static_cast<double>(kNoiseScale) * 0x1p-15;
   double cells_per_m = 1.0 / noise.wavelength_m;
   for (int o = 0; o < noise.octaves; ++o) {
-    const Octave octave{cells_per_m, mix64(noise.seed, static_cast<std::uint64_t>(o))};
-    split_axis(octave, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, 0, 2, x);
-    split_axis(octave, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, 0, 2, z);
+    const std::uint64_t seed = mix64(noise.seed, static_cast<std::uint64_t>(o));
+    const double cells_per_m_z = cells_per_m / noise.stretch_z;
+    split_axis({cells_per_m, seed}, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, 0, 2, x);
+    split_axis({cells_per_m_z, seed}, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, 0, 2, z);
     const auto add = HWY_DYNAMIC_DISPATCH(add_octave);
     for (int k = 0; k < grid.depth; ++k) {
       const auto at = static_cast<std::size_t>(k);
@@ -151,7 +154,8 @@ void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<
                           z.fraction[at],
                           {z.cell_hash[0][at], z.cell_hash[1][at]},
                           static_cast<float>(amplitude),
-                          static_cast<float>(amplitude * cells_per_m)};
+                          static_cast<float>(amplitude * cells_per_m),
+                          static_cast<float>(amplitude * cells_per_m_z)};
       add(row, static_cast<std::size_t>(grid.width), &value[at * stride], &slope_x[at * stride], &slope_z[at * stride]);
     }
     amplitude *= noise.gain;

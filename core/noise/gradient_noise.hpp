@@ -21,6 +21,7 @@ struct FractalNoise {
   double lacunarity = 2;
   double gain = 0.5;
   std::uint64_t seed = 0;
+  double stretch_z = 1;  ///< wavelength along z over that along x
 };
 
 /// One octave has standard deviation 0.28 and stays within +-1.6; a sum is not normalised by its octaves.

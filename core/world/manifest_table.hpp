@@ -64,6 +64,16 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"strata.district_m", "m", 500, 50000, 5200, false, "Wavelength of districts with and without ledges: more means wider ones."},
   {"strata.resistance", "", 0, 1, 0.4, false, "How much hard rock withstands erosion: more means shallower gullies in it."},
 
+  {"coast.cliff_m", "m", 0, 90, 52, false, "Height of sea cliffs: more means higher walls, 0 leaves every shore as erosion made it."},
+  {"coast.cliff_vary_m", "m", 0, 37, 34, false, "How much the height of cliffs varies along a coast: more means higher and lower ones side by side."},
+  {"coast.cliff_share", "", 0, 1, 0.65, false, "Share of the hilly coasts that end in cliffs: less leaves more of them to beaches."},
+  {"coast.cliff_slope", "", 0.005, 1, 0.07, false, "Slope of the hinterland from which a coast can be a cliff: less lets plains end in cliffs too."},
+  {"coast.district_m", "m", 500, 50000, 4500, false, "Wavelength of coasts with and without cliffs: more means longer stretches of one kind."},
+  {"coast.fin_m", "m", 0, 15, 11, false, "Amplitude of fins across a cliff coast: more means longer headlands and more stacks, 0 a smooth line."},
+  {"coast.fin_wavelength_m", "m", 20, 300, 64, false, "Distance from fin to fin: more means broader headlands and bays."},
+  {"coast.joint_m", "m", 0, 1.5, 1.1, false, "Depth of the joints in cliffs: more means stronger buttresses, 0 smooth walls."},
+  {"coast.shelf", "", 0.1, 1, 0.6, false, "Share of its depth that the sea floor below cliffs keeps: less means shallower water."},
+
   {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
   {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},
   {"micro.base_m", "m", 0, 5, 0.4, false, "Amplitude of roughness on plains: more means bumpier meadows."},

@@ -47,6 +47,21 @@ ErosionControls erosion_of(const Reader& m) {
   return c;
 }
 
+CoastControls coast_of(const Reader& m) {
+  CoastControls c;
+  c.cliff_m = m.number("coast.cliff_m");
+  c.cliff_vary_m = m.number("coast.cliff_vary_m");
+  c.cliff_share = m.number("coast.cliff_share");
+  c.cliff_slope = m.number("coast.cliff_slope");
+  c.district_m = m.number("coast.district_m");
+  c.fin_m = m.number("coast.fin_m");
+  c.fin_wavelength_m = m.number("coast.fin_wavelength_m");
+  c.joint_m = m.number("coast.joint_m");
+  c.shelf = m.number("coast.shelf");
+  c.seed = m.seed(14);
+  return c;
+}
+
 MacroTerms macro_of(const Reader& m) {
   return {m.real("macro.sea_floor_m"),   m.real("macro.plain_m"),          m.real("macro.land_bias"),
           m.real("macro.range_width"),   m.real("macro.range_height_m"),   m.real("macro.foothill"),
@@ -80,6 +95,7 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.set_choice = {m.number("strata.set_m"), 2, 2.3, 0.35, m.seed(12)};
   t.district = {m.number("strata.district_m"), 1, 2.0, 0.5, m.seed(13)};
   t.resistance = m.real("strata.resistance");
+  t.coast = coast_of(m);
   const int micro_octaves = m.whole("micro.octaves");
   t.micro = {m.number("micro.wavelength_m"), micro_octaves > 0 ? micro_octaves : 1, 2.0, 0.5, m.seed(8)};
   t.micro_base_m = micro_octaves > 0 ? m.real("micro.base_m") : 0.0f;
@@ -93,9 +109,11 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   // never wrong.
   const double hills = m.number("relief.base_m") + m.number("relief.hill_m");
   const double gullies = erosion_bound(t.erosion);
-  t.low_m = static_cast<float>(m.number("macro.sea_floor_m") - 150 - 0.5 * hills - 0.1 * gullies);
-  t.high_m =
-      static_cast<float>(m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies);
+  const glm::dvec2 eroded_m{m.number("macro.sea_floor_m") - 150 - 0.5 * hills - 0.1 * gullies,
+                            m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies};
+  const glm::dvec2 bound_m = coast_bound(t.coast, eroded_m);
+  t.low_m = static_cast<float>(bound_m.x);
+  t.high_m = static_cast<float>(bound_m.y);
   t.manifest = std::move(manifest);
   return t;
 }

@@ -19,8 +19,11 @@ class Arrays {
     memory.resize(std::max(memory.size(), count * arrays));
     next_ = memory.data();
   }
-  float* take() { return std::exchange(next_, next_ + count_); }
-  std::span<float> span(float* array) const { return {array, count_}; }
+  float* take(std::size_t arrays = 1) { return std::exchange(next_, next_ + arrays * count_); }
+  std::span<float> span(float* array, std::size_t arrays = 1) const { return {array, arrays * count_}; }
+  /// Arrays taken after this can be taken again from `rewind` on.
+  float* mark() const { return next_; }
+  void rewind(float* mark) { next_ = mark; }
 
  private:
   std::size_t count_;
@@ -39,12 +42,23 @@ NoiseArrays row_of(const NoiseArrays& a, std::size_t at) {
 
 void resize_outputs(ColumnBlock& out, std::size_t count) {
   for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness,
-                      &out.stack_m, &out.choice})
+                      &out.stack_m, &out.choice, &out.cliff_m})
     array->resize(count);
 }
 
-/// 11 noises of 3 arrays, relief's 5, hardness, and erosion's 3.
-constexpr std::size_t kWorkspaceArrays = 11 * 3 + 5 + 1 + 3;
+/// Relief's 4, hardness, erosion's 3 and the district's 3 live on; the coast's are the most that one stage needs.
+constexpr std::size_t kWorkspaceArrays = 4 + 1 + 3 + 3 + kCoastArrays;
+
+/// Lowest and highest surface of a filled block.
+void measure(ColumnBlock& block) {
+  block.height_low_m = block.height_high_m = block.height_m[0];
+  for (std::size_t at = 0; at < block.height_m.size(); at += block.stride) {
+    const auto row = std::span(block.height_m).subspan(at, static_cast<std::size_t>(block.grid.width));
+    const auto [low, high] = std::ranges::minmax(row);
+    block.height_low_m = std::min(block.height_low_m, low);
+    block.height_high_m = std::max(block.height_high_m, high);
+  }
+}
 
 }  // namespace
 
@@ -77,16 +91,23 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
   resize_outputs(out, count);
   Arrays arrays(out.workspace, count, kWorkspaceArrays);
 
+  float* relief_x = arrays.take();
+  float* relief_z = arrays.take();
+  float* fade = arrays.take();
+  float* strength = arrays.take();
+  float* hardness = arrays.take();
+  float* eroded = arrays.take();
+  float* eroded_x = arrays.take();
+  float* eroded_z = arrays.take();
+  const NoiseArrays district = sample(t.district, grid, arrays);
+  float* const scratch = arrays.mark();
+
   const NoiseArrays continent = sample(t.continent, grid, arrays);
   const NoiseArrays range = sample(t.range, grid, arrays);
   const NoiseArrays massif = sample(t.massif, grid, arrays);
   const NoiseArrays crest = sample(t.crest, grid, arrays);
   const NoiseArrays swell = sample(t.swell, grid, arrays);
   const NoiseArrays relief = sample(t.relief, grid, arrays);
-  float* relief_x = arrays.take();
-  float* relief_z = arrays.take();
-  float* fade = arrays.take();
-  float* strength = arrays.take();
   for (std::size_t at = 0; at < count; at += stride) {
     relief_row(t.macro,
                {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
@@ -95,11 +116,10 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
                width);
   }
 
+  arrays.rewind(scratch);
   const NoiseArrays fold = sample(t.fold, grid, arrays);
   const NoiseArrays tilt = sample(t.tilt, grid, arrays);
   const NoiseArrays set_choice = sample(t.set_choice, grid, arrays);
-  const NoiseArrays district = sample(t.district, grid, arrays);
-  float* hardness = arrays.take();
   for (std::size_t at = 0; at < count; at += stride) {
     strata_place_row(t, {fold.v + at, tilt.v + at, set_choice.v + at, &out.stack_m[at], &out.choice[at]}, width);
     t.strata->hardness_row({&out.stack_m[at], &out.choice[at], district.v + at, width}, &out.height_m[at],
@@ -107,13 +127,9 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
     resist_row(t.resistance, hardness + at, strength + at, width);
   }
 
-  float* eroded = arrays.take();
-  float* eroded_x = arrays.take();
-  float* eroded_z = arrays.take();
   erode(t.erosion, grid, {arrays.span(relief_x), arrays.span(relief_z), arrays.span(fade), arrays.span(strength)},
         {arrays.span(eroded), arrays.span(eroded_x), arrays.span(eroded_z), out.ridge});
 
-  const NoiseArrays micro = sample(t.micro, grid, arrays);
   for (std::size_t at = 0; at < count; at += stride) {
     float* height = &out.height_m[at];
     float* slope_x = &out.slope_x[at];
@@ -123,19 +139,21 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
     add_change_row({eroded + at, eroded_x + at, eroded_z + at, height, slope_x, slope_z}, width);
     t.strata->ledge_row({&out.stack_m[at], &out.choice[at], district.v + at, width}, relief_x + at, relief_z + at,
                         height, slope_x, slope_z);
-    surface_row(
-        t, {&out.hilliness[at], micro.v + at, micro.x + at, micro.z + at, height, slope_x, slope_z, &out.steepness[at]},
-        width);
   }
 
-  out.height_low_m = t.high_m;
-  out.height_high_m = t.low_m;
+  arrays.rewind(scratch);
+  coast(t.coast, grid, {arrays.span(relief_x), arrays.span(relief_z), out.hilliness},
+        {out.height_m, out.slope_x, out.slope_z, out.cliff_m}, arrays.span(arrays.take(kCoastArrays), kCoastArrays));
+
+  arrays.rewind(scratch);
+  const NoiseArrays micro = sample(t.micro, grid, arrays);
   for (std::size_t at = 0; at < count; at += stride) {
-    const auto row = std::span(out.height_m).subspan(at, width);
-    const auto [low, high] = std::ranges::minmax(row);
-    out.height_low_m = std::min(out.height_low_m, low);
-    out.height_high_m = std::max(out.height_high_m, high);
+    surface_row(t,
+                {&out.hilliness[at], micro.v + at, micro.x + at, micro.z + at, &out.height_m[at], &out.slope_x[at],
+                 &out.slope_z[at], &out.steepness[at]},
+                width);
   }
+  measure(out);
 }
 
 Material WorldFunction::cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const {

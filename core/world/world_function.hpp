@@ -36,6 +36,7 @@ struct ColumnBlock {
   std::vector<float> hilliness;  ///< 0 (plain) .. 1 (range)
   std::vector<float> stack_m;    ///< height of the top of the rock layers
   std::vector<float> choice;     ///< layer set, with the fraction over which the next one takes over
+  std::vector<float> cliff_m;    ///< height of the sea cliff that stands here or nearby, 0 on other coasts and inland
   float height_low_m = 0;        ///< over the whole block
   float height_high_m = 0;
   std::vector<float> workspace;  ///< the kernels' intermediate arrays

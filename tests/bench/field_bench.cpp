@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/erosion/filter.hpp"
+#include "core/landforms/coast.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/world/world_function.hpp"
 #include "tests/support/simd_targets.hpp"
@@ -77,6 +78,25 @@ void FieldNoise(benchmark::State& state) {
   count_points(state, kPoints);
 }
 
+/// A shore that rises by 0.16 through the middle of the tile: everything the stage can be asked for.
+void FieldCoast(benchmark::State& state) {
+  const std::size_t count = sample_count(kTile);
+  const std::vector<float> rise(count, 0.16f);
+  const std::vector<float> level(count, 0.0f);
+  const std::vector<float> hilliness(count, 0.5f);
+  std::vector<float> height(count);
+  std::vector<float> slope_x(count);
+  std::vector<float> slope_z(count);
+  std::vector<float> cliff(count);
+  std::vector<float> workspace(count * kCoastArrays);
+  for (auto _ : state) {
+    for (std::size_t n = 0; n < count; ++n) height[n] = 0.16f * static_cast<float>(n % row_stride(kTile)) - 5.0f;
+    coast({}, kTile, {rise, level, hilliness}, {height, slope_x, slope_z, cliff}, workspace);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
 void FieldColumnsTile(benchmark::State& state) {
   const WorldFunction world{Manifest()};
   ColumnBlock block;
@@ -90,6 +110,7 @@ void FieldColumnsTile(benchmark::State& state) {
 BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosionScalar)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldNoise)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldCoast)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldColumnsTile)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -25,7 +25,8 @@ const std::vector<Room>& rooms() {
                           {"core/noise", {"core/base", "core/grid"}},
                           {"core/plates", {"core/base", "core/grid", "core/noise"}},
                           {"core/strata", {"core/base", "core/grid", "core/noise"}},
-                          {"core/erosion", {"core/base", "core/grid", "core/noise"}}};
+                          {"core/erosion", {"core/base", "core/grid", "core/noise"}},
+                          {"core/landforms", {"core/base", "core/grid", "core/noise"}}};
     std::vector<std::string_view> below;
     for (const Room& room : out) {
       below.push_back(room.name);
