@@ -71,14 +71,22 @@ std::string format_manifest(const Manifest& manifest) {
   const std::string seed = std::to_string(manifest.seed);
   out += "seed = " + (quoted ? '"' + seed + '"' : seed) + "\n";
   std::string_view section;
+  for (const ParameterInfo& info : manifest_parameters()) {
+    if (section_of(info.name) == section) continue;
+    section = section_of(info.name);
+    out += "\n" + format_parameters(manifest, section);
+  }
+  return out;
+}
+
+std::string format_parameters(const Manifest& manifest, std::string_view name) {
   const std::span<const ParameterInfo> parameters = manifest_parameters();
   TALUS_CHECK(manifest.values.size() == parameters.size());
+  std::string out;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterInfo& info = parameters[i];
-    if (section_of(info.name) != section) {
-      section = section_of(info.name);
-      out += "\n[" + std::string(section) + "]\n";
-    }
+    if (info.name != name && section_of(info.name) != name) continue;
+    if (out.empty()) out += "[" + std::string(section_of(info.name)) + "]\n";
     out += "# " + std::string(info.meaning) + "\n# " + format_number(info.low) + ".." + format_number(info.high);
     if (!info.unit.empty()) out += " " + std::string(info.unit);
     if (info.whole) out += ", whole";
@@ -86,6 +94,15 @@ std::string format_manifest(const Manifest& manifest) {
     out += std::string(key_of(info.name)) + " = " + format_number(manifest.values[i]) + "\n";
   }
   return out;
+}
+
+std::string_view nearest_parameter(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const ParameterInfo& info : manifest_parameters()) {
+    names.push_back(info.name);
+    names.push_back(section_of(info.name));
+  }
+  return nearest_word(name, names);
 }
 
 std::string world_hash(const Manifest& manifest) {

@@ -19,6 +19,13 @@ std::expected<Manifest, std::vector<TextFault>> parse_manifest(std::string_view 
 /// back.
 std::string format_manifest(const Manifest& manifest);
 
+/// The part of format_manifest(manifest) that sets one parameter ("erosion.gain") or one section ("erosion"); empty
+/// when there is none of that name.
+std::string format_parameters(const Manifest& manifest, std::string_view name);
+
+/// The parameter or section that `name` was probably meant to be; empty when none is near.
+std::string_view nearest_parameter(std::string_view name);
+
 /// 64 hexadecimal digits: SHA-256 of canonical_bytes(manifest).
 std::string world_hash(const Manifest& manifest);
 

@@ -20,6 +20,7 @@ constexpr const char* kFooter = R"(Examples:
   talus map --area 0,0,64 -o map.png                     # 64 km around the origin
   talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
   talus manifest check worlds/alps.toml
+  talus manifest explain erosion.gully_weight
 
 Exit codes:
   0 done   1 server, network or file failed   2 wrong command line   3 chunk without a surface
@@ -42,7 +43,9 @@ struct Arguments {
   FlyOptions fly;
   MapOptions map;
   std::string checked;
-  std::string explained;
+  ExplainOptions explain;
+  std::string from;
+  std::string to;
   std::function<ExitCode()> command;
 };
 
@@ -106,15 +109,20 @@ void add_map(CLI::App& app, Arguments& arguments) {
 }
 
 void add_manifest(CLI::App& app, Arguments& arguments) {
-  CLI::App* manifest = app.add_subcommand("manifest", "Check or explain the TOML file of a world");
+  CLI::App* manifest = app.add_subcommand("manifest", "Check, explain or compare the TOML files of worlds");
   manifest->require_subcommand(1);
   CLI::App* check = manifest->add_subcommand("check", "Report every fault with its line, or the world's hash");
   check->add_option("file", arguments.checked, "TOML file")->required();
   check->callback([&arguments] { arguments.command = [&arguments] { return manifest_check(arguments.checked); }; });
-  CLI::App* explain = manifest->add_subcommand("explain", "Print every parameter with unit, limits and meaning");
-  explain->add_option("file", arguments.explained, "TOML file; else the default world");
-  explain->callback(
-      [&arguments] { arguments.command = [&arguments] { return manifest_explain(arguments.explained); }; });
+  CLI::App* explain = manifest->add_subcommand("explain", "Print parameters with unit, limits, default and meaning");
+  explain->add_option("name", arguments.explain.name, "a parameter as erosion.gain, or a section; else all");
+  explain->add_option("--world", arguments.explain.manifest, "TOML file whose values to print; else the defaults");
+  explain->callback([&arguments] { arguments.command = [&arguments] { return manifest_explain(arguments.explain); }; });
+  CLI::App* diff = manifest->add_subcommand("diff", "Print what two worlds differ in");
+  diff->add_option("from", arguments.from, "TOML file")->required();
+  diff->add_option("to", arguments.to, "TOML file")->required();
+  diff->callback(
+      [&arguments] { arguments.command = [&arguments] { return manifest_diff(arguments.from, arguments.to); }; });
 }
 
 }  // namespace

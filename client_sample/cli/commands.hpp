@@ -59,7 +59,14 @@ struct MapOptions {
 ExitCode map(const MapOptions& options);
 
 ExitCode manifest_check(const std::string& file);
-/// Prints a manifest with every parameter, its unit, limits and meaning; the default world's without a file.
-ExitCode manifest_explain(const std::string& file);
+
+struct ExplainOptions {
+  std::string name;      ///< a parameter, a section, or empty: all
+  std::string manifest;  ///< whose values to show; empty: the default world
+};
+/// Prints parameters as a TOML file: unit, limits, default and what more and less of each does.
+ExitCode manifest_explain(const ExplainOptions& options);
+/// Prints what two worlds differ in, one line a key.
+ExitCode manifest_diff(const std::string& from, const std::string& to);
 
 }  // namespace talus::cli

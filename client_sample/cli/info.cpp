@@ -1,11 +1,9 @@
-// talus info and talus manifest: what a world is.
+// talus info: what a server's world is.
 #include <fmt/format.h>
 
 #include "client_sample/cli/commands.hpp"
-#include "client_sample/cli/files.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
-#include "protocol/manifest_toml.hpp"
 
 namespace talus::cli {
 
@@ -41,20 +39,6 @@ ExitCode info(const InfoOptions& options) {
              edge, edge * (1 << world->lod_max), world->lod_max);
   fmt::print("heights     {:.0f} to {:.0f} m, sea at {} m\n", world->shape.height_range_m.x,
              world->shape.height_range_m.y, world->sea_level_m);
-  return kDone;
-}
-
-ExitCode manifest_check(const std::string& file) {
-  const auto manifest = load_manifest(file);
-  if (!manifest) return manifest.error();
-  fmt::print("{}: a sound world, \"{}\", hash {}\n", file, manifest->name, protocol::world_hash(*manifest));
-  return kDone;
-}
-
-ExitCode manifest_explain(const std::string& file) {
-  const auto manifest = load_manifest(file);
-  if (!manifest) return manifest.error();
-  fmt::print("{}", protocol::format_manifest(*manifest));
   return kDone;
 }
 

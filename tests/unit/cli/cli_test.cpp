@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -119,6 +121,37 @@ TEST(Cli, SaysByItsExitCodeWhatWentWrong) {
   EXPECT_EQ(talus({"--help"}), kDone);
 }
 
+/// What a command prints on standard output.
+std::string said(const std::vector<std::string>& words, int code) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(talus(words), code);
+  std::fflush(stdout);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(Cli, ExplainsOneParameterOrOneSection) {
+  const std::string gain = said({"manifest", "explain", "erosion.gain"}, kDone);
+  EXPECT_EQ(std::ranges::count(gain, '\n'), 4);
+  EXPECT_THAT(gain, testing::HasSubstr("0.1..0.9, default 0.5\ngain = 0.5\n"));
+  const std::string section = said({"manifest", "explain", "cover"}, kDone);
+  EXPECT_THAT(section, testing::HasSubstr("snow_line_m = "));
+  EXPECT_THAT(section, testing::Not(testing::HasSubstr("[erosion]")));
+  EXPECT_EQ(talus({"manifest", "explain", "erosion.gian"}), kUsage);
+}
+
+TEST(Cli, SaysWhatTwoWorldsDifferIn) {
+  const Scratch scratch;
+  std::ofstream(scratch / "a.toml") << "name = \"a\"\n";
+  std::ofstream(scratch / "b.toml") << "name = \"a\"\nseed = 5\n[cover]\nsnow_line_m = 700.5\n";
+  const std::string text = said({"manifest", "diff", scratch / "a.toml", scratch / "b.toml"}, kDone);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 2);
+  EXPECT_THAT(text, testing::ContainsRegex("cover.snow_line_m +1050 -> 700.5 m\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("seed +20261122 -> 5\n"));
+  EXPECT_THAT(said({"manifest", "diff", scratch / "a.toml", scratch / "a.toml"}, kDone),
+              testing::HasSubstr("same world"));
+  EXPECT_EQ(talus({"manifest", "diff", scratch / "a.toml", scratch / "absent.toml"}), kFailed);
+}
+
 TEST(Cli, DrawsMapsOfAnySquareAndSize) {
   const Scratch scratch;
   const std::string out = scratch / "m.png";
@@ -151,6 +184,7 @@ TEST(Cli, ChecksAndExplainsManifests) {
   EXPECT_EQ(talus({"manifest", "check", scratch / "bad.toml"}), kBadManifest);
   EXPECT_EQ(talus({"manifest", "check", scratch / "absent.toml"}), kFailed);
   EXPECT_EQ(talus({"manifest", "explain"}), kDone);
+  EXPECT_EQ(talus({"manifest", "explain", "--world", scratch / "bad.toml"}), kBadManifest);
   EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / "c.drc", "--local", "--manifest", scratch / "bad.toml"}),
             kBadManifest);
 }

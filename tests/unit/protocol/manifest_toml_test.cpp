@@ -68,6 +68,27 @@ TEST(ManifestToml, ReportsEveryFaultWithItsLine) {
                           "alps.toml:7: erosoin: unknown section, did you mean [erosion]?"));
 }
 
+TEST(ManifestToml, RefusesEveryParameterOutOfRangeOfTheWrongTypeAndMistypedWithLineKeyAndRange) {
+  for (const ParameterInfo& info : manifest_parameters()) {
+    const std::string section(info.name.substr(0, info.name.find('.')));
+    const std::string key(info.name.substr(section.size() + 1));
+    const auto fault = [&](const std::string& line) {
+      const auto faults = faults_of("[" + section + "]\n" + line + "\n");
+      return faults.size() == 1 ? faults.front() : std::to_string(faults.size()) + " faults";
+    };
+    const std::string place = "alps.toml:2: " + std::string(info.name);
+    const std::string range = "allowed " + format_number(info.low) + ".." + format_number(info.high);
+    for (const double bad : {info.low - 1, info.high + 1}) {
+      const std::string text = fault(key + " = " + format_number(bad));
+      EXPECT_THAT(text, testing::AllOf(testing::StartsWith(place), testing::EndsWith(range))) << info.name;
+    }
+    EXPECT_EQ(fault(key + " = true"),
+              place + ": is true or false, wanted a " + (info.whole ? "whole number" : "number"));
+    const auto mistyped = fault(key + "x = 1");
+    EXPECT_THAT(mistyped, HasSubstr("unknown key, did you mean " + section + ".")) << info.name;
+  }
+}
+
 TEST(ManifestToml, NamesTheSectionsWhenNoneIsNear) {
   EXPECT_THAT(faults_of("[zzz]\n"), ElementsAre(HasSubstr("known are [chunk] [macro]")));
 }
