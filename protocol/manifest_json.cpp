@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/grid/chunk_key.hpp"
+#include "core/map/map_tile.hpp"
 #include "core/strata/material.hpp"
 #include "core/world/world_function.hpp"
 #include "protocol/limits.hpp"
@@ -63,6 +64,17 @@ Json parameters_json(const Manifest& manifest) {
   return out;
 }
 
+/// Map tiles: enough to turn a place into a tile and a pixel.
+Json map_json(const WorldFunction& world) {
+  Json limits = Json::array();
+  for (int zoom = 0; zoom <= kMapZoomMax; ++zoom) limits.push_back(map_tile_limit(zoom, world.cells()));
+  const auto coarsest = static_cast<double>(map_view({0, 0, 0}).pixel_voxels);
+  return {{"tile_pixels", kMapTilePixels},
+          {"zoom_max", kMapZoomMax},
+          {"pixel_m", number_json(coarsest * world.voxel_m())},
+          {"tile_limit", limits}};
+}
+
 }  // namespace
 
 std::string manifest_json(const Manifest& manifest) {
@@ -80,6 +92,7 @@ std::string manifest_json(const Manifest& manifest) {
                  {"height_range_m", {number_json(heights.x), number_json(heights.y)}},
                  {"materials", materials_json()},
                  {"formats", {"drc", "glb"}},
+                 {"map", map_json(world)},
                  {"limits", limits_json()},
                  {"parameters", parameters_json(manifest)}};
   return out.dump();

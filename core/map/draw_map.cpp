@@ -89,8 +89,8 @@ float relief_of(MapLayer layer) {
   switch (layer) {
     case MapLayer::kShaded:
       return 1.0f;
-    case MapLayer::kMaterials:
-    case MapLayer::kLayers:
+    case MapLayer::kMaterial:
+    case MapLayer::kLayer:
       return 0.5f;
     default:
       return 0.0f;

@@ -33,9 +33,9 @@ class Painter {
       case MapLayer::kSlope:
         // Vertical is bright: 1 - the cosine of the slope's angle would hide gentle slopes.
         return heat_light(std::sqrt(1.0f - b.steepness[at] * b.steepness[at]));
-      case MapLayer::kMaterials:
+      case MapLayer::kMaterial:
         return light_of(info_of(material(b, i, k, at)).colour_rgb);
-      case MapLayer::kLayers: {
+      case MapLayer::kLayer: {
         const LayerPlace place = world_.layer(b.stack_m[at], b.choice[at], height, column_voxel(b, i, k));
         return category_light(static_cast<std::uint64_t>(place.set) * kLayers +
                               static_cast<std::uint64_t>(place.index));

@@ -31,7 +31,7 @@ void gather_ground(const WorldFunction& world, const MapView& view, MapLayer lay
 
 /// Whether the sea is painted over a layer, or its floor shown like land.
 constexpr bool has_sea(MapLayer layer) {
-  return layer == MapLayer::kShaded || layer == MapLayer::kMaterials || layer == MapLayer::kLayers;
+  return layer == MapLayer::kShaded || layer == MapLayer::kMaterial || layer == MapLayer::kLayer;
 }
 
 }  // namespace talus

@@ -19,7 +19,7 @@ struct MapView {
   int height = 0;
 };
 
-enum class MapLayer : std::uint8_t { kShaded, kHeight, kSlope, kMaterials, kLayers, kRidge, kHilliness };
+enum class MapLayer : std::uint8_t { kShaded, kHeight, kSlope, kMaterial, kLayer, kRidge, kHilliness };
 
 /// The word of every layer, by its number.
 inline constexpr std::array<std::string_view, 7> kMapLayerNames{"shaded", "height", "slope",    "materials",

@@ -15,9 +15,10 @@
 
 namespace talus::server {
 
-enum class PayloadFormat : std::uint8_t { kDraco, kGlb };
+/// kMap is a picture of a map tile: key.lod is its zoom, key.x and key.z are its x and y.
+enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kMap };
 
-/// Encoded bytes of one chunk. Without bytes when the chunk is all air or all rock.
+/// Encoded bytes of one chunk or map tile. Without bytes when the chunk is all air or all rock.
 struct ChunkPayload {
   ChunkKind kind = ChunkKind::kAir;
   std::vector<std::byte> bytes;

@@ -77,6 +77,11 @@ HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat
     answer.fields = payload->kind == ChunkKind::kAir ? "Talus-Chunk: air\r\n" : "Talus-Chunk: rock\r\n";
     return answer;
   }
+  if (format == PayloadFormat::kMap) {
+    answer.content_type = "image/png";
+    answer.payload = std::move(payload);
+    return answer;
+  }
   answer.content_type = format == PayloadFormat::kDraco ? "application/octet-stream" : "model/gltf-binary";
   answer.fields = "Talus-Chunk: mesh\r\n";
   answer.payload = std::move(payload);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/grid/chunk_key.hpp"
+#include "core/map/map_tile.hpp"
 #include "server/net/url_text.hpp"
 #include "server/world/place_query.hpp"
 
@@ -108,6 +109,41 @@ Route chunk_route(const HttpRequest& request, const RouteContext& context, std::
   return ChunkRoute{name};
 }
 
+/// zoom, x, y.png.
+Route map_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
+  constexpr std::array<std::string_view, 3> kNames{"zoom", "x", "y"};
+  if (parts.size() != kNames.size() || !parts[2].ends_with(".png")) {
+    return bad_request("bad_map", "map: expected map/{zoom}/{x}/{y}.png");
+  }
+  std::array<std::string_view, 3> texts{parts[0], parts[1], parts[2]};
+  texts[2].remove_suffix(4);
+  std::array<std::int32_t, 3> values{};
+  const int cells = context.worlds[world]->function().cells();
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const std::int32_t limit = i == 0 ? 0 : map_tile_limit(values[0], cells);
+    const std::int32_t high = i == 0 ? kMapZoomMax : limit - 1;
+    const auto value = whole_number(texts[i]);
+    if (!value || *value < -limit || *value > high) {
+      return bad_request(fmt::format("bad_{}", kNames[i]),
+                         fmt::format("{}: expected a whole number from {} to {}", kNames[i], -limit, high));
+    }
+    values[i] = *value;
+  }
+  PayloadName name;
+  name.world = static_cast<std::uint32_t>(world);
+  name.format = PayloadFormat::kMap;
+  name.key = {values[0], values[1], 0, values[2]};
+  const std::string& etag = context.worlds[world]->etag(name.format);
+  if (names_etag(request.field("if-none-match").value_or(""), etag)) {
+    HttpAnswer answer;
+    answer.status = 304;
+    answer.etag = etag;
+    answer.cache_control = kImmutable;
+    return AnswerRoute{std::move(answer)};
+  }
+  return ChunkRoute{name};
+}
+
 std::optional<glm::dvec2> read_place(std::string_view text, const WorldFunction& world) {
   const auto numbers = decimal_numbers(text, 2);
   const double limit = place_limit_m(world);
@@ -156,6 +192,7 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
     return cacheable_json(request, found.manifest_json(), found.manifest_etag());
   }
   if (parts[1] == "chunks") return chunk_route(request, context, world, parts.subspan(2));
+  if (parts[1] == "map") return map_route(request, context, world, parts.subspan(2));
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "points") return points_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "stream") return StreamRoute{world};

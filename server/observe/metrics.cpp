@@ -61,8 +61,8 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
 }};
 
 constexpr std::array<const char*, static_cast<std::size_t>(Hop::kEnd)> kHops{
-    "read_loop", "next_message", "decode",       "on_message", "request",
-    "load",      "build_chunk",  "encode_chunk", "publish",    "write_loop"};
+    "read_loop",   "next_message", "decode",   "on_message", "request", "load",
+    "build_chunk", "encode_chunk", "draw_map", "encode_map", "publish", "write_loop"};
 
 prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
   prometheus::ClientMetric::Histogram out;

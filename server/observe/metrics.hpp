@@ -28,6 +28,8 @@ enum class Hop : std::uint8_t {
   kLoad,
   kBuildChunk,
   kEncodeChunk,
+  kDrawMap,  ///< what a map tile passes instead of kBuildChunk and kEncodeChunk
+  kEncodeMap,
   kPublish,
   kWriteLoop,
   kEnd

@@ -4,7 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "core/map/map_tile.hpp"
 #include "protocol/mesh_codec.hpp"
+#include "protocol/png.hpp"
 
 namespace talus::server {
 
@@ -41,11 +43,25 @@ ChunkKind TerrainBuilder::build_mesh(const PayloadName& name, const WorldFunctio
   return mesh_chunk(world, name.key, sample_chunk(world, name.key, scratch.build), scratch.build, scratch.mesh);
 }
 
+ChunkPayload TerrainBuilder::build_map(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  const MapView view = map_view({name.key.lod, name.key.x, name.key.z});
+  scratch.rgb.resize(std::size_t{3} * kMapTilePixels * kMapTilePixels);
+  const Instant start = clock_.now();
+  draw_map(world, view, {}, scratch.map, scratch.rgb);
+  const Instant drawn = clock_.now();
+  metrics_.record(Hop::kDrawMap, drawn - start);
+  ChunkPayload out{ChunkKind::kMesh, protocol::encode_png(view.width, view.height, scratch.rgb)};
+  metrics_.record(Hop::kEncodeMap, clock_.now() - drawn);
+  out.bytes.shrink_to_fit();
+  return out;
+}
+
 std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::size_t thread,
                                                   const CancelToken& token) {
   if (token.is_cancelled()) return std::nullopt;
   const WorldFunction& world = worlds_[name.world]->function();
   Scratch& scratch = scratch_[thread];
+  if (name.format == PayloadFormat::kMap) return build_map(name, world, scratch);
 
   const Instant start = clock_.now();
   const ChunkKind kind = build_mesh(name, world, scratch);

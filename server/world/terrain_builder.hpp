@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/map/draw_map.hpp"
 #include "core/mesh/build_chunk.hpp"
 #include "server/cache/column_memo.hpp"
 #include "server/observe/metrics.hpp"
@@ -25,8 +26,11 @@ class TerrainBuilder final : public ChunkBuilder {
   struct alignas(64) Scratch {
     ChunkScratch build;
     ChunkMesh mesh;
+    MapScratch map;
+    std::vector<std::uint8_t> rgb;  ///< of the tile being drawn
   };
 
+  ChunkPayload build_map(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
 
   const Worlds& worlds_;

@@ -13,6 +13,8 @@ namespace {
 /// Raised when the bytes of a format change for one and the same mesh.
 constexpr std::string_view kDracoEdition = "drc1";
 constexpr std::string_view kGlbEdition = "glb1";
+/// Raised when maps look different.
+constexpr std::string_view kMapEdition = "map1";
 constexpr std::string_view kManifestEdition = "man1";
 /// Edits are not kept yet: every chunk is as its world made it.
 constexpr std::string_view kRevision = "0";
@@ -32,6 +34,7 @@ World::World(Manifest manifest)
       manifest_json_(protocol::manifest_json(function_.manifest())),
       etag_draco_(etag_of(hash_, kDracoEdition)),
       etag_glb_(etag_of(hash_, kGlbEdition)),
+      etag_map_(etag_of(hash_, kMapEdition)),
       etag_manifest_(etag_of(hash_, kManifestEdition)) {}
 
 std::size_t world_index(const Worlds& worlds, std::string_view name) {

@@ -26,6 +26,7 @@ class World {
   const std::string& manifest_json() const { return manifest_json_; }
   /// Quoted, strong, and known without generating: world hash, revision and format decide every byte of a payload.
   const std::string& etag(PayloadFormat format) const {
+    if (format == PayloadFormat::kMap) return etag_map_;
     return format == PayloadFormat::kDraco ? etag_draco_ : etag_glb_;
   }
   /// Quoted: of the manifest's body.
@@ -38,6 +39,7 @@ class World {
   std::string manifest_json_;
   std::string etag_draco_;
   std::string etag_glb_;
+  std::string etag_map_;
   std::string etag_manifest_;
 };
 

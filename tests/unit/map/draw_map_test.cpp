@@ -1,5 +1,7 @@
 #include "core/map/draw_map.hpp"
 
+#include "core/map/map_tile.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +28,7 @@ std::array<std::uint8_t, 3> pixel(const std::vector<std::uint8_t>& rgb, const Ma
 }
 
 TEST(Map, ColoursAPixelAlikeInEveryView) {
-  for (const MapStyle& style : {MapStyle{}, MapStyle{MapLayer::kMaterials, 25}, MapStyle{MapLayer::kRidge, 0}}) {
+  for (const MapStyle& style : {MapStyle{}, MapStyle{MapLayer::kMaterial, 25}, MapStyle{MapLayer::kRidge, 0}}) {
     for (const std::int64_t pixel_voxels : {std::int64_t{1}, std::int64_t{64}}) {
       const int samples = pixel_voxels == 1 ? 1 : 2;
       const MapView whole{-100 * pixel_voxels, 40 * pixel_voxels, pixel_voxels, samples, 150, 30};
@@ -38,6 +40,47 @@ TEST(Map, ColoursAPixelAlikeInEveryView) {
           ASSERT_EQ(pixel(a, whole, i + 40, k + 10), pixel(b, part, i, k)) << i << ' ' << k;
       }
     }
+  }
+}
+
+TEST(MapTile, HalvesItsPixelsFromZoomToZoomAndCoversTheSameGround) {
+  for (int zoom = 0; zoom < kMapZoomMax; ++zoom) {
+    const MapView coarse = map_view({zoom, -3, 5});
+    const MapView fine = map_view({zoom + 1, -6, 10});
+    EXPECT_EQ(coarse.pixel_voxels, 2 * fine.pixel_voxels);
+    EXPECT_EQ(coarse.x_voxel, fine.x_voxel);
+    EXPECT_EQ(coarse.z_voxel, fine.z_voxel);
+  }
+  EXPECT_EQ(map_view({kMapZoomMax, 1, -1}).x_voxel, 256);
+  EXPECT_EQ(map_view({kMapZoomMax, 1, -1}).z_voxel, -256);
+}
+
+TEST(MapTile, ReachesAsFarAsChunksOfLodZero) {
+  for (const int cells : {16, 32}) {
+    for (int zoom = 0; zoom <= kMapZoomMax; ++zoom) {
+      const std::int32_t limit = map_tile_limit(zoom, cells);
+      EXPECT_TRUE(is_valid(MapTile{zoom, limit - 1, -limit}, cells));
+      EXPECT_FALSE(is_valid(MapTile{zoom, limit, 0}, cells));
+      EXPECT_FALSE(is_valid(MapTile{zoom, 0, -limit - 1}, cells));
+      EXPECT_EQ(-map_view({zoom, -limit, 0}).x_voxel, (std::int64_t{kChunkLimit} + 1) * cells);
+    }
+    EXPECT_FALSE(is_valid(MapTile{-1, 0, 0}, cells));
+    EXPECT_FALSE(is_valid(MapTile{kMapZoomMax + 1, 0, 0}, cells));
+  }
+}
+
+TEST(MapTile, MeetsItsNeighbourWithoutASeam) {
+  // A view that lies across the border of two tiles has the pixels of both.
+  const MapView left = map_view({6, -1, 0});
+  const MapView right = map_view({6, 0, 0});
+  MapView across = left;
+  across.x_voxel = left.x_voxel + 200 * left.pixel_voxels;
+  const auto a = drawn(left);
+  const auto b = drawn(right);
+  const auto c = drawn(across);
+  for (int k = 0; k < kMapTilePixels; k += 5) {
+    for (int i = 0; i < 56; ++i) ASSERT_EQ(pixel(c, across, i, k), pixel(a, left, 200 + i, k));
+    for (int i = 56; i < 256; ++i) ASSERT_EQ(pixel(c, across, i, k), pixel(b, right, i - 56, k));
   }
 }
 

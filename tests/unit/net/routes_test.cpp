@@ -51,6 +51,14 @@ TEST_F(Routes, ReadAChunksKeyAndFormat) {
   EXPECT_EQ(std::get<ChunkRoute>(glb).name.origin, glm::dvec3(1.5, -2000.0, 0.0));
 }
 
+TEST_F(Routes, ReadAMapTile) {
+  const Route route = resolve_target("/v1/worlds/default/map/5/-4/7.png");
+  const auto* tile = std::get_if<ChunkRoute>(&route);
+  ASSERT_NE(tile, nullptr);
+  EXPECT_EQ(tile->name.format, PayloadFormat::kMap);
+  EXPECT_EQ(tile->name.key, (ChunkKey{5, -4, 0, 7}));
+}
+
 TEST_F(Routes, NameTheFieldOfEveryMalformedCoordinate) {
   for (const std::string_view bad : {"2147483648", "-2147483649", "9007199254740992",
                                      "1073741824", "1e300",       "1.0",
@@ -82,7 +90,7 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
     HttpMethod method;
     int status;
   };
-  constexpr std::array<Case, 27> kTable{{
+  constexpr std::array<Case, 37> kTable{{
       {"/healthz", "", HttpMethod::kGet, 200},
       {"/readyz", "", HttpMethod::kHead, 200},
       {"/v1/worlds", "", HttpMethod::kGet, 200},
@@ -98,6 +106,16 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
       {"/v1/worlds/default/nothing", "", HttpMethod::kGet, 404},
       {"/v1/worlds/default/chunks", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0/0.jpg", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0/0/0.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/12/0/0.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/-1/0/0.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/65536/0.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0/-65537.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/01/0.png", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/map/0/0/0.png", "", HttpMethod::kOther, 405},
       {"/v1/worlds/default/chunks/0/0/0/0", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0/0.obj", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0/0/0.drc", "", HttpMethod::kGet, 400},
