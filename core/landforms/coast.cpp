@@ -34,13 +34,13 @@ enum CoastNoiseUse : std::size_t {
 };
 
 struct CoastTerms {
-  float cliff, cliff_vary, share_shift, cliff_slope, fin, headland, joint, shelf;
+  float cliff, cliff_vary, share_shift, cliff_slope, fin, headland, joint, shelf, beach;
 };
 
 struct CoastRow {
   std::array<CoastNoise, kCoastNoises> noise;
   const float *relief_x, *relief_z, *hilliness;
-  float *height, *slope_x, *slope_z, *cliff;
+  float *height, *slope_x, *slope_z, *cliff, *beach;
 };
 
 }  // namespace talus
@@ -61,6 +61,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class V>
 HWY_INLINE Jet<V> magnitude(const Jet<V>& a) {
   return {hn::Abs(a.v), hn::CopySign(a.x, hn::Xor(a.x, a.v)), hn::CopySign(a.z, hn::Xor(a.z, a.v))};
+}
+
+/// What a beach adds to the raw height r, for a whole beach. Five steps, each as high as its share of the profile is
+/// steeper (+) or flatter (-) than r: they sum to 0, and the flattest of them, the bar's lee, leaves r a slope of 1
+/// - 1.5
+/// * 1.0 / 1.7 = 0.12.
+template <class V>
+HWY_INLINE Jet<V> beach_profile(const Jet<V>& r) {
+  return smoothstep(kBar_m, kBarCrest_m, r) * 0.5f - smoothstep(kBarCrest_m, kFaceLow_m, r) * 1.0f +
+         smoothstep(kFaceLow_m, kFaceHigh_m, r) * 1.1f - smoothstep(kFaceHigh_m, kBerm_m, r) * 1.2f +
+         smoothstep(kBerm_m, kDuneFoot_m, r) * 0.6f;
 }
 
 /// 0 on coasts that end in beaches, 1 where cliffs stand whole. `steep` and `hilly` are taken as constant.
@@ -113,7 +124,15 @@ void coast_row(const CoastTerms& t, const CoastRow& r, std::size_t width) {
     const Jet<V> lift = wall * cliff * plunge;
     const Jet<V> shelf = cliff * (t.shelf - 1.0f) + 1.0f;
     V stands;
-    const Jet<V> out = cliff_remap(raw, lift, shelf, stands);
+    const Jet<V> remapped = cliff_remap(raw, lift, shelf, stands);
+
+    // Waves heap sand where no cliff stands and the land behind is gentle.
+    const V gentle = hn::Sub(one, smoothstep(0.08f, 0.22f, Jet<V>{steep, zero, zero}).v);
+    const Jet<V> sandy = (cliff * -1.0f + 1.0f) * Jet<V>{hn::Mul(gentle, hn::Set(d, t.beach)), zero, zero};
+    const Jet<V> out = remapped + beach_profile(raw) * sandy;
+    const Jet<V> swash =
+        smoothstep(2 * kBar_m, kBar_m, raw) * (smoothstep(kBerm_m, 2 * kDuneFoot_m, raw) * -1.0f + 1.0f);
+    hn::StoreU(hn::Mul(sandy.v, swash.v), d, r.beach + i);
     hn::StoreU(out.v, d, r.height + i);
     hn::StoreU(out.x, d, r.slope_x + i);
     hn::StoreU(out.z, d, r.slope_z + i);
@@ -164,7 +183,7 @@ CoastTerms terms_of(const CoastControls& c) {
   const auto f = [](double v) { return static_cast<float>(v); };
   return {f(c.cliff_m),     f(c.cliff_vary_m), f(1.2 * (c.cliff_share - 0.5)),
           f(c.cliff_slope), f(c.fin_m),        f(0.7 * c.fin_m),
-          f(c.joint_m),     f(c.shelf)};
+          f(c.joint_m),     f(c.shelf),        f(c.beach)};
 }
 
 }  // namespace
@@ -175,8 +194,10 @@ void coast(const CoastControls& c, const ColumnGrid& grid, const CoastInput& in,
   const std::size_t count = sample_count(grid);
   TALUS_CHECK(in.relief_x.size() >= count && in.relief_z.size() >= count && in.hilliness.size() >= count);
   TALUS_CHECK(surface.height_m.size() >= count && surface.slope_x.size() >= count && surface.slope_z.size() >= count);
-  TALUS_CHECK(surface.cliff_m.size() >= count && workspace.size() >= kCoastArrays * count);
+  TALUS_CHECK(surface.cliff_m.size() >= count && surface.beach.size() >= count);
+  TALUS_CHECK(workspace.size() >= kCoastArrays * count);
   std::fill_n(surface.cliff_m.begin(), count, 0.0f);
+  std::fill_n(surface.beach.begin(), count, 0.0f);
   if (is_far_from_sea(grid, surface.height_m)) return;
 
   const auto noises = noises_of(c);
@@ -198,13 +219,14 @@ void coast(const CoastControls& c, const ColumnGrid& grid, const CoastInput& in,
     here.slope_x = &surface.slope_x[at];
     here.slope_z = &surface.slope_z[at];
     here.cliff = &surface.cliff_m[at];
+    here.beach = &surface.beach[at];
     run(terms, here, static_cast<std::size_t>(grid.width));
   }
 }
 
 glm::dvec2 coast_bound(const CoastControls& c, glm::dvec2 heights_m) {
   const auto one = static_cast<double>(kNoiseScale);
-  const double wrinkle = one * (1.7 * c.fin_m + 1.41 * c.joint_m);
+  const double wrinkle = one * (1.7 * c.fin_m + 1.41 * c.joint_m) + 0.7;  // 0.7: most of a beach's profile
   const double lift = c.cliff_m + one * c.cliff_vary_m;
   // Heights keep their order, and beyond the reach of wrinkles and lift they stay what they are.
   const auto deepest = -static_cast<double>(kWrinkleReach_m);

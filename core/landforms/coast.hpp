@@ -1,8 +1,9 @@
-// Where land meets the sea: cliffs with headlands, stacks and buttresses on hilly coasts. Pure.
+// Where land meets the sea: cliffs with headlands, stacks and buttresses on hilly coasts, beaches on gentle ones. Pure.
 //
 // A stage of the world function after erosion and ledges. It wrinkles the raw height near the sea (fins across the
 // coast, joints in the rock) and then lifts what lies above the sea (core/landforms/cliff-inl.hpp). Where it lifts,
-// and how far, is decided by the hinterland's slope and by districts: plains keep their gentle shores.
+// and how far, is decided by the hinterland's slope and by districts. Shores of plains and of districts without cliffs
+// get the profile of a beach: bar, face, berm, and the foot of the dunes.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,14 @@ inline constexpr float kCliffRim_m = 2.4f;
 /// order: the lift falls by at most 1.5 * kCliffMax_m / 380 m = 0.59 per metre.
 inline constexpr float kCliffInland_m = 60.0f;
 inline constexpr float kCliffReach_m = 440.0f;
+/// A beach reaches from the first to the last of these raw heights, in metres: the sea's side of the bar, its crest,
+/// the lower and the upper end of the beach's face, the berm, the foot of the dunes.
+inline constexpr float kBar_m = -4.0f;
+inline constexpr float kBarCrest_m = -2.4f;
+inline constexpr float kFaceLow_m = -0.7f;
+inline constexpr float kFaceHigh_m = 0.9f;
+inline constexpr float kBerm_m = 3.3f;
+inline constexpr float kDuneFoot_m = 5.6f;
 /// Down to this depth the sea floor is raised, in metres.
 inline constexpr float kShelfReach_m = 90.0f;
 inline constexpr float kCliffMax_m = 150.0f;  ///< highest lift
@@ -37,6 +46,7 @@ struct CoastControls {
   double fin_wavelength_m = 64;
   double joint_m = 1.1;
   double shelf = 0.6;
+  double beach = 1;
   std::uint64_t seed = 0;
 };
 
@@ -53,6 +63,7 @@ struct CoastSurface {
   std::span<float> slope_x;
   std::span<float> slope_z;
   std::span<float> cliff_m;  ///< out: how far land is lifted here, 0 on coasts without cliffs
+  std::span<float> beach;    ///< out: 0..1, whole from below the tide to the foot of the dunes on coasts with beaches
 };
 
 /// Arrays of sample_count(grid) floats that `coast` needs as workspace.

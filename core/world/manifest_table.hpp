@@ -64,6 +64,13 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"strata.district_m", "m", 500, 50000, 5200, false, "Wavelength of districts with and without ledges: more means wider ones."},
   {"strata.resistance", "", 0, 1, 0.4, false, "How much hard rock withstands erosion: more means shallower gullies in it."},
 
+  {"cones.cell_m", "m", 3000, 100000, 8000, false, "Edge of the cells that hold a volcano, seamount or field of cinder cones each: more means rarer ones."},
+  {"cones.land_share", "", 0, 1, 0.22, false, "Share of cells on land with cones: more means more volcanoes, 0 none."},
+  {"cones.sea_share", "", 0, 1, 0.5, false, "Share of cells on the sea floor with cones: more means more seamounts, 0 none."},
+  {"cones.volcano_m", "m", 50, 1500, 850, false, "Height of the tallest volcanoes: more means taller and wider ones."},
+  {"cones.seamount_m", "m", 20, 1000, 288, false, "Height of seamounts: more lets the tallest rise from the sea as islands."},
+  {"cones.cinder_m", "m", 10, 200, 75, false, "Height of cinder cones: more means taller and wider ones."},
+
   {"coast.cliff_m", "m", 0, 90, 52, false, "Height of sea cliffs: more means higher walls, 0 leaves every shore as erosion made it."},
   {"coast.cliff_vary_m", "m", 0, 37, 34, false, "How much the height of cliffs varies along a coast: more means higher and lower ones side by side."},
   {"coast.cliff_share", "", 0, 1, 0.65, false, "Share of the hilly coasts that end in cliffs: less leaves more of them to beaches."},
@@ -73,6 +80,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
   {"coast.fin_wavelength_m", "m", 20, 300, 64, false, "Distance from fin to fin: more means broader headlands and bays."},
   {"coast.joint_m", "m", 0, 1.5, 1.1, false, "Depth of the joints in cliffs: more means stronger buttresses, 0 smooth walls."},
   {"coast.shelf", "", 0.1, 1, 0.6, false, "Share of its depth that the sea floor below cliffs keeps: less means shallower water."},
+  {"coast.beach", "", 0, 1, 1, false, "How far gentle shores become beaches with bar, berm and dune foot: less leaves them as erosion made them."},
 
   {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
   {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},

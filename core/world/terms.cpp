@@ -58,7 +58,20 @@ CoastControls coast_of(const Reader& m) {
   c.fin_wavelength_m = m.number("coast.fin_wavelength_m");
   c.joint_m = m.number("coast.joint_m");
   c.shelf = m.number("coast.shelf");
+  c.beach = m.number("coast.beach");
   c.seed = m.seed(14);
+  return c;
+}
+
+ConeControls cones_of(const Reader& m) {
+  ConeControls c;
+  c.cell_m = m.number("cones.cell_m");
+  c.land_share = m.number("cones.land_share");
+  c.sea_share = m.number("cones.sea_share");
+  c.volcano_m = m.number("cones.volcano_m");
+  c.seamount_m = m.number("cones.seamount_m");
+  c.cinder_m = m.number("cones.cinder_m");
+  c.seed = m.seed(15);
   return c;
 }
 
@@ -96,6 +109,7 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.district = {m.number("strata.district_m"), 1, 2.0, 0.5, m.seed(13)};
   t.resistance = m.real("strata.resistance");
   t.coast = coast_of(m);
+  t.cones = cones_of(m);
   const int micro_octaves = m.whole("micro.octaves");
   t.micro = {m.number("micro.wavelength_m"), micro_octaves > 0 ? micro_octaves : 1, 2.0, 0.5, m.seed(8)};
   t.micro_base_m = micro_octaves > 0 ? m.real("micro.base_m") : 0.0f;
@@ -110,7 +124,8 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   const double hills = m.number("relief.base_m") + m.number("relief.hill_m");
   const double gullies = erosion_bound(t.erosion);
   const glm::dvec2 eroded_m{m.number("macro.sea_floor_m") - 150 - 0.5 * hills - 0.1 * gullies,
-                            m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies};
+                            m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies +
+                                cones_bound(t.cones)};
   const glm::dvec2 bound_m = coast_bound(t.coast, eroded_m);
   t.low_m = static_cast<float>(bound_m.x);
   t.high_m = static_cast<float>(bound_m.y);

@@ -5,6 +5,7 @@
 
 #include "core/erosion/filter.hpp"
 #include "core/landforms/coast.hpp"
+#include "core/landforms/cones.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/strata/strata.hpp"
 #include "core/world/world_function.hpp"
@@ -26,6 +27,7 @@ struct WorldFunction::Terms {
   FractalNoise continent, range, massif, crest, swell, relief, micro, fold, tilt, set_choice, district;
   ErosionControls erosion;
   CoastControls coast;
+  ConeControls cones;
   std::unique_ptr<const Strata> strata;
   float fold_m = 0, tilt_m = 0, resistance = 0;
   float micro_base_m = 0, micro_high_m = 0;

@@ -1,6 +1,7 @@
 #include "core/world/world_function.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,8 @@ class Arrays {
     memory.resize(std::max(memory.size(), count * arrays));
     next_ = memory.data();
   }
+  /// The same memory from its next array on, for a smaller grid.
+  Arrays(const Arrays& other, std::size_t count) : count_(count), next_(other.next_) {}
   float* take(std::size_t arrays = 1) { return std::exchange(next_, next_ + arrays * count_); }
   std::span<float> span(float* array, std::size_t arrays = 1) const { return {array, arrays * count_}; }
   /// Arrays taken after this can be taken again from `rewind` on.
@@ -36,14 +39,58 @@ NoiseArrays sample(const FractalNoise& noise, const ColumnGrid& grid, Arrays& ar
   return out;
 }
 
+/// Height before erosion and what goes with it.
+struct ReliefArrays {
+  float *height, *slope_x, *slope_z, *fade, *strength, *hilliness;
+};
+
 NoiseArrays row_of(const NoiseArrays& a, std::size_t at) {
   return {a.v + at, a.x + at, a.z + at};
 }
 
 void resize_outputs(ColumnBlock& out, std::size_t count) {
   for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness,
-                      &out.stack_m, &out.choice, &out.cliff_m})
+                      &out.stack_m, &out.choice, &out.cliff_m, &out.beach})
     array->resize(count);
+}
+
+/// Plains, hills and ranges, over the arrays behind `arrays`' next one.
+void relief_stage(const WorldFunction::Terms& t, const ColumnGrid& grid, Arrays arrays, const ReliefArrays& out) {
+  const NoiseArrays continent = sample(t.continent, grid, arrays);
+  const NoiseArrays range = sample(t.range, grid, arrays);
+  const NoiseArrays massif = sample(t.massif, grid, arrays);
+  const NoiseArrays crest = sample(t.crest, grid, arrays);
+  const NoiseArrays swell = sample(t.swell, grid, arrays);
+  const NoiseArrays relief = sample(t.relief, grid, arrays);
+  for (std::size_t at = 0; at < sample_count(grid); at += row_stride(grid)) {
+    relief_row(t.macro,
+               {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
+                row_of(relief, at), out.height + at, out.slope_x + at, out.slope_z + at, out.fade + at,
+                out.strength + at, out.hilliness + at},
+               static_cast<std::size_t>(grid.width));
+  }
+}
+
+/// Volcanoes and seamounts on top of it; cinder cones are found too. Whether a cone stands depends on the relief at its
+/// centre.
+void cone_stage(const WorldFunction::Terms& t, const ColumnGrid& grid, Arrays arrays, ColumnBlock& block,
+                const ReliefArrays& relief) {
+  find_cone_sites(t.cones, grid, block.cone_sites);
+  block.cones.clear();
+  for (const ConeSite& site : block.cone_sites) {
+    const auto voxel = [&](double at_m) { return static_cast<std::int64_t>(at_m / grid.voxel_m); };
+    const ColumnGrid centre{voxel(site.x_m), voxel(site.z_m), 1, 1, 1, grid.voxel_m};
+    alignas(64) std::array<float, 6 * kRowPadding> ground{};
+    float* const at = ground.data();
+    relief_stage(
+        t, centre, Arrays(arrays, sample_count(centre)),
+        {at, at + kRowPadding, at + 2 * kRowPadding, at + 3 * kRowPadding, at + 4 * kRowPadding, at + 5 * kRowPadding});
+    grow_cones(t.cones, site, ground[0], ground[5 * kRowPadding], block.cones);
+  }
+  const auto span = [&](float* array) { return arrays.span(array); };
+  raise_cones(t.cones, block.cones, grid, {span(relief.height), span(relief.slope_x), span(relief.slope_z)},
+              {span(relief.fade), span(relief.strength), span(relief.hilliness)},
+              arrays.span(arrays.take(kConeArrays), kConeArrays));
 }
 
 /// Relief's 4, hardness, erosion's 3 and the district's 3 live on; the coast's are the most that one stage needs.
@@ -102,19 +149,9 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
   const NoiseArrays district = sample(t.district, grid, arrays);
   float* const scratch = arrays.mark();
 
-  const NoiseArrays continent = sample(t.continent, grid, arrays);
-  const NoiseArrays range = sample(t.range, grid, arrays);
-  const NoiseArrays massif = sample(t.massif, grid, arrays);
-  const NoiseArrays crest = sample(t.crest, grid, arrays);
-  const NoiseArrays swell = sample(t.swell, grid, arrays);
-  const NoiseArrays relief = sample(t.relief, grid, arrays);
-  for (std::size_t at = 0; at < count; at += stride) {
-    relief_row(t.macro,
-               {row_of(continent, at), row_of(range, at), row_of(massif, at), row_of(crest, at), row_of(swell, at),
-                row_of(relief, at), &out.height_m[at], relief_x + at, relief_z + at, fade + at, strength + at,
-                &out.hilliness[at]},
-               width);
-  }
+  const ReliefArrays relief{out.height_m.data(), relief_x, relief_z, fade, strength, out.hilliness.data()};
+  relief_stage(t, grid, arrays, relief);
+  cone_stage(t, grid, arrays, out, relief);
 
   arrays.rewind(scratch);
   const NoiseArrays fold = sample(t.fold, grid, arrays);
@@ -142,8 +179,13 @@ void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
   }
 
   arrays.rewind(scratch);
+  heap_cinders(t.cones, out.cones, grid, {out.height_m, out.slope_x, out.slope_z},
+               arrays.span(arrays.take(kConeArrays), kConeArrays));
+
+  arrays.rewind(scratch);
   coast(t.coast, grid, {arrays.span(relief_x), arrays.span(relief_z), out.hilliness},
-        {out.height_m, out.slope_x, out.slope_z, out.cliff_m}, arrays.span(arrays.take(kCoastArrays), kCoastArrays));
+        {out.height_m, out.slope_x, out.slope_z, out.cliff_m, out.beach},
+        arrays.span(arrays.take(kCoastArrays), kCoastArrays));
 
   arrays.rewind(scratch);
   const NoiseArrays micro = sample(t.micro, grid, arrays);

@@ -17,6 +17,7 @@
 
 #include "core/grid/chunk_key.hpp"
 #include "core/grid/column_grid.hpp"
+#include "core/landforms/cones.hpp"
 #include "core/strata/material.hpp"
 #include "core/strata/strata.hpp"
 #include "core/world/manifest.hpp"
@@ -37,9 +38,12 @@ struct ColumnBlock {
   std::vector<float> stack_m;    ///< height of the top of the rock layers
   std::vector<float> choice;     ///< layer set, with the fraction over which the next one takes over
   std::vector<float> cliff_m;    ///< height of the sea cliff that stands here or nearby, 0 on other coasts and inland
+  std::vector<float> beach;      ///< 1 on a beach, falling to 0 inland, in deeper water and on other coasts
   float height_low_m = 0;        ///< over the whole block
   float height_high_m = 0;
   std::vector<float> workspace;  ///< the kernels' intermediate arrays
+  std::vector<ConeSite> cone_sites;
+  std::vector<Cone> cones;
 };
 
 class WorldFunction {

@@ -1,11 +1,13 @@
 // Field kernels by the point, SIMD against plain scalar: `build/bench/bin/talus_bench --benchmark_filter=Field`.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "core/erosion/filter.hpp"
 #include "core/landforms/coast.hpp"
+#include "core/landforms/cones.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/world/world_function.hpp"
 #include "tests/support/simd_targets.hpp"
@@ -88,10 +90,34 @@ void FieldCoast(benchmark::State& state) {
   std::vector<float> slope_x(count);
   std::vector<float> slope_z(count);
   std::vector<float> cliff(count);
+  std::vector<float> beach(count);
   std::vector<float> workspace(count * kCoastArrays);
   for (auto _ : state) {
     for (std::size_t n = 0; n < count; ++n) height[n] = 0.16f * static_cast<float>(n % row_stride(kTile)) - 5.0f;
-    coast({}, kTile, {rise, level, hilliness}, {height, slope_x, slope_z, cliff}, workspace);
+    coast({}, kTile, {rise, level, hilliness}, {height, slope_x, slope_z, cliff, beach}, workspace);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
+/// A tile on the flank of a volcano.
+void FieldCones(benchmark::State& state) {
+  const std::size_t count = sample_count(kTile);
+  std::array<std::vector<float>, 6> relief;
+  for (auto& array : relief) array.resize(count);
+  std::vector<float> workspace(count * kConeArrays);
+  const Cone volcano{static_cast<double>(kTile.x_voxel) - 500,
+                     static_cast<double>(kTile.z_voxel),
+                     2400,
+                     800,
+                     0.1f,
+                     70,
+                     1,
+                     0.6f,
+                     false};
+  for (auto _ : state) {
+    raise_cones({}, {&volcano, 1}, kTile, {relief[0], relief[1], relief[2]}, {relief[3], relief[4], relief[5]},
+                workspace);
     benchmark::ClobberMemory();
   }
   count_points(state, kPoints);
@@ -111,6 +137,7 @@ BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosionScalar)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldNoise)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldCoast)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldCones)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldColumnsTile)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

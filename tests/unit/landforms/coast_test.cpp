@@ -18,11 +18,12 @@ constexpr std::uint64_t kSeed = 90210;
 /// A plane of raw heights that rises along x, as the stage meets it and as it leaves it.
 struct Shore {
   ColumnGrid grid;
-  std::vector<float> relief_x, relief_z, hilliness, height, slope_x, slope_z, cliff, workspace;
+  std::vector<float> relief_x, relief_z, hilliness, height, slope_x, slope_z, cliff, beach, workspace;
 
   Shore(const CoastControls& controls, const ColumnGrid& at, float rise, float first_m) : grid(at) {
     const std::size_t count = sample_count(grid);
-    for (auto* array : {&relief_x, &relief_z, &hilliness, &height, &slope_x, &slope_z, &cliff}) array->resize(count);
+    for (auto* array : {&relief_x, &relief_z, &hilliness, &height, &slope_x, &slope_z, &cliff, &beach})
+      array->resize(count);
     workspace.resize(kCoastArrays * count);
     std::ranges::fill(relief_x, rise);
     std::ranges::fill(slope_x, rise);
@@ -33,7 +34,7 @@ struct Shore {
             first_m + rise * static_cast<float>(i * static_cast<double>(grid.step_voxel) * grid.voxel_m);
       }
     }
-    coast(controls, grid, {relief_x, relief_z, hilliness}, {height, slope_x, slope_z, cliff}, workspace);
+    coast(controls, grid, {relief_x, relief_z, hilliness}, {height, slope_x, slope_z, cliff, beach}, workspace);
   }
   std::size_t index(int i, int k) const {
     return static_cast<std::size_t>(k) * row_stride(grid) + static_cast<std::size_t>(i);
@@ -123,6 +124,23 @@ TEST(Coast, LeavesShoresOfPlainsWithoutCliffs) {
     sum += static_cast<double>(s.cliff[0]);
   }
   EXPECT_LT(sum / 40, 5.0);
+}
+
+TEST(Coast, GivesGentleShoresABarAFaceABermAndADuneFoot) {
+  CoastControls c;
+  c.cliff_share = 0;
+  // From 5 m under water to 7 m above in 300 m.
+  const Shore s(c, {0, 0, 2, 150, 2, 1}, 0.04f, -5.0f);
+  const auto rise = [&](double from_raw_m, double to_raw_m) {
+    const auto column = [](double raw_m) { return static_cast<int>((raw_m + 5.0) / 0.08); };
+    return (s.at(column(to_raw_m), 0) - s.at(column(from_raw_m), 0)) / (to_raw_m - from_raw_m);
+  };
+  EXPECT_LT(rise(-2.0, -1.2), 0.6) << "the bar's lee is flat";
+  EXPECT_GT(rise(-0.4, 0.6), 1.5) << "the face is steep";
+  EXPECT_LT(rise(1.4, 2.8), 0.6) << "the berm is flat";
+  EXPECT_GT(rise(3.8, 5.2), 1.2) << "dunes rise behind it";
+  EXPECT_GT(s.beach[s.index(70, 0)], 0.95f);
+  for (int i = 1; i < 150; ++i) ASSERT_GT(s.at(i, 0), s.at(i - 1, 0));
 }
 
 TEST(Coast, GivesTheSameBitsOnEveryTarget) {
