@@ -19,6 +19,7 @@ constexpr const char* kFooter = R"(Examples:
   talus fly --until-complete --far 2000 --seconds 60     # time to a complete view
   talus map --area 0,0,64 -o map.png                     # 64 km around the origin
   talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
+  talus section --from -2000,0 --to 2000,500 -o cut.png
   talus manifest check worlds/alps.toml
   talus manifest explain erosion.gully_weight
 
@@ -42,6 +43,7 @@ struct Arguments {
   InfoOptions info;
   FlyOptions fly;
   MapOptions map;
+  SectionOptions section;
   std::string checked;
   ExplainOptions explain;
   std::string from;
@@ -108,6 +110,19 @@ void add_map(CLI::App& app, Arguments& arguments) {
   map->callback([&arguments] { arguments.command = [&arguments] { return cli::map(arguments.map); }; });
 }
 
+void add_section(CLI::App& app, Arguments& arguments) {
+  SectionOptions& options = arguments.section;
+  CLI::App* section =
+      app.add_subcommand("section", "Draw a vertical cut through a world as a PNG: rock, caves, sea, sky");
+  section->add_option("--world", options.manifest, "TOML file of the world; else the default world");
+  section->add_option("--from", options.from, "x,z in metres: the left edge")->required();
+  section->add_option("--to", options.to, "x,z in metres: the right edge")->required();
+  section->add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  section->add_option("--heights", options.heights, "low,high in metres; else what the ground needs");
+  section->add_option("-o,--output", options.output, "PNG file")->required();
+  section->callback([&arguments] { arguments.command = [&arguments] { return cli::section(arguments.section); }; });
+}
+
 void add_manifest(CLI::App& app, Arguments& arguments) {
   CLI::App* manifest = app.add_subcommand("manifest", "Check, explain or compare the TOML files of worlds");
   manifest->require_subcommand(1);
@@ -137,6 +152,7 @@ int run(int argc, char** argv) {
   add_info(app, arguments);
   add_fly(app, arguments);
   add_map(app, arguments);
+  add_section(app, arguments);
   add_manifest(app, arguments);
   try {
     app.parse(argc, argv);

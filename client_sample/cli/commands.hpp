@@ -58,6 +58,16 @@ struct MapOptions {
 };
 ExitCode map(const MapOptions& options);
 
+struct SectionOptions {
+  std::string manifest;  ///< file; empty: the default world
+  std::string from;      ///< x,z in metres
+  std::string to;
+  std::string size = "1600x600";
+  std::string heights;  ///< low,high in metres; empty: what the ground needs
+  std::string output;
+};
+ExitCode section(const SectionOptions& options);
+
 ExitCode manifest_check(const std::string& file);
 
 struct ExplainOptions {

@@ -46,6 +46,18 @@ std::optional<glm::dvec3> parse_place(std::string_view text) {
   return glm::dvec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
+std::optional<glm::dvec2> parse_pair(std::string_view text) {
+  const auto numbers = parse_numbers<double, 2>(text, ',');
+  if (!numbers || !std::isfinite((*numbers)[0]) || !std::isfinite((*numbers)[1])) return std::nullopt;
+  return glm::dvec2{(*numbers)[0], (*numbers)[1]};
+}
+
+std::optional<glm::ivec2> parse_size(std::string_view text) {
+  const auto numbers = parse_numbers<int, 2>(text, 'x');
+  if (!numbers || (*numbers)[0] < 1 || (*numbers)[1] < 1) return std::nullopt;
+  return glm::ivec2{(*numbers)[0], (*numbers)[1]};
+}
+
 std::string json_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

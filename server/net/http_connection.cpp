@@ -189,6 +189,11 @@ Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
       return json_answer(points_json(world.function(), places));
     };
     answer = co_await answer_query(points->world, std::move(question));
+  } else if (const auto* ray = std::get_if<RayRoute>(&route)) {
+    Question question = [ray = *ray](const World& world) {
+      return json_answer(ray_json(world.function(), ray.from_m, ray.direction, ray.max_m));
+    };
+    answer = co_await answer_query(ray->world, std::move(question));
   } else if (const auto* stream = std::get_if<StreamRoute>(&route)) {
     co_return co_await upgrade(stream->world, head, request->method);
   } else {

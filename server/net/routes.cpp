@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+
+#include <glm/geometric.hpp>
 
 #include "core/grid/chunk_key.hpp"
 #include "core/map/map_tile.hpp"
@@ -184,6 +187,39 @@ Route points_route(const HttpRequest& request, const RouteContext& context, std:
   return route;
 }
 
+/// Three finite numbers, each within `limit`.
+std::optional<glm::dvec3> read_vector(const HttpRequest& request, std::string_view name, double limit) {
+  const QueryValue value = query_value(request.query, name);
+  const auto numbers = value.state == QueryState::kPresent ? decimal_numbers(value.value, 3) : std::nullopt;
+  const auto inside = [&](double v) { return std::abs(v) <= limit; };
+  if (!numbers || !std::ranges::all_of(*numbers, inside)) return std::nullopt;
+  return glm::dvec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+Route ray_route(const HttpRequest& request, const RouteContext& context, std::size_t world) {
+  const WorldFunction& function = context.worlds[world]->function();
+  const double place_max = place_limit_m(function);
+  const double ray_max = ray_limit_m(function);
+  RayRoute route{world, {}, {}, ray_max};
+  const auto from = read_vector(request, "from", place_max);
+  if (!from) return bad_request("bad_from", fmt::format("from: expected x,y,z in metres, each within +-{}", place_max));
+  const auto direction = read_vector(request, "dir", 1e6);
+  const double length = direction ? glm::length(*direction) : 0.0;
+  if (length < 1e-6) {
+    return bad_request("bad_dir", "dir: expected x,y,z of a direction, each within +-1e6, longer than 1e-6");
+  }
+  if (const QueryValue value = query_value(request.query, "max"); value.state != QueryState::kAbsent) {
+    const auto max = value.state == QueryState::kPresent ? decimal_number(value.value) : std::nullopt;
+    if (!max || !(*max > 0) || *max > ray_max) {
+      return bad_request("bad_max", fmt::format("max: expected metres above 0, up to {}", ray_max));
+    }
+    route.max_m = *max;
+  }
+  route.from_m = *from;
+  route.direction = *direction / length;
+  return route;
+}
+
 Route world_route(const HttpRequest& request, const RouteContext& context, Segments parts) {
   const std::size_t world = world_index(context.worlds, parts[0]);
   if (world == context.worlds.size()) return not_found("unknown_world", "there is no world of that name here");
@@ -195,6 +231,7 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
   if (parts[1] == "map") return map_route(request, context, world, parts.subspan(2));
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "points") return points_route(request, context, world);
+  if (parts.size() == 2 && parts[1] == "ray") return ray_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "stream") return StreamRoute{world};
   return not_found("unknown_route", "there is nothing of that name in a world");
 }

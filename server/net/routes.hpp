@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "server/cache/payload.hpp"
 #include "server/net/http_answer.hpp"
@@ -34,6 +35,13 @@ struct PointsRoute {
   std::size_t world = 0;
   std::vector<glm::dvec2> places_m;
 };
+/// Ask the pool what a ray meets.
+struct RayRoute {
+  std::size_t world = 0;
+  glm::dvec3 from_m{};
+  glm::dvec3 direction{};  ///< of length 1
+  double max_m = 0;
+};
 /// Become a stream of this world.
 struct StreamRoute {
   std::size_t world = 0;
@@ -41,7 +49,7 @@ struct StreamRoute {
 /// Read the metrics; admin door only.
 struct MetricsRoute {};
 
-using Route = std::variant<AnswerRoute, ChunkRoute, SpawnRoute, PointsRoute, StreamRoute, MetricsRoute>;
+using Route = std::variant<AnswerRoute, ChunkRoute, SpawnRoute, PointsRoute, RayRoute, StreamRoute, MetricsRoute>;
 
 enum class Door : std::uint8_t { kPublic, kAdmin };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/grid/chunk_key.hpp"
+#include "core/world/ray.hpp"
 
 namespace talus::server {
 
@@ -131,14 +132,33 @@ std::string points_json(const WorldFunction& world, std::span<const glm::dvec2> 
     const double slope = std::hypot(slope_x, slope_z);
     const double ridge = blend(corners(block.ridge), fx, fz);
     const double up = 1.0 / std::sqrt(1.0 + slope * slope);
-    const Material cover = world.cover(static_cast<float>(height), static_cast<float>(up), static_cast<float>(ridge),
-                                       block.hilliness[0], voxel);
+    const auto surface_m = static_cast<float>(height);
+    Material material =
+        world.cover(surface_m, static_cast<float>(up), static_cast<float>(ridge), block.hilliness[0], voxel);
+    if (material == Material::kRock) material = world.rock(block.stack_m[0], block.choice[0], surface_m, voxel);
+    const LayerPlace layer = world.layer(block.stack_m[0], block.choice[0], surface_m, voxel);
     if (out.back() != '[') out += ',';
-    fmt::format_to(std::back_inserter(out),
-                   R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","ridge":{:.4f}}})", place.x,
-                   place.y, height, slope, kMaterials[static_cast<std::size_t>(cover)].name, ridge);
+    fmt::format_to(
+        std::back_inserter(out),
+        R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","layer":{},"layer_set":{},"ridge":{:.4f}}})",
+        place.x, place.y, height, slope, info_of(material).name, layer.index, layer.set, ridge);
   }
   return out + "]}";
+}
+
+double ray_limit_m(const WorldFunction& world) {
+  return kRayVoxelsMax * world.voxel_m();
+}
+
+std::string ray_json(const WorldFunction& world, const glm::dvec3& from_m, const glm::dvec3& direction, double max_m) {
+  DensityBrick brick;
+  const auto hit = cast_ray(world, from_m, direction, max_m, brick);
+  if (!hit) return "null";
+  const glm::dvec3& p = hit->position_m;
+  const glm::dvec3& n = hit->normal;
+  return fmt::format(
+      R"({{"position":[{:.4f},{:.4f},{:.4f}],"normal":[{:.4f},{:.4f},{:.4f}],"material":"{}","distance_m":{:.4f}}})",
+      p.x, p.y, p.z, n.x, n.y, n.z, info_of(hit->material).name, hit->distance_m);
 }
 
 }  // namespace talus::server

@@ -22,8 +22,15 @@ double place_limit_m(const WorldFunction& world);
 /// search widens from 0.5 km to about 130 km; nothing when all of that is sea or cliff.
 std::optional<glm::dvec3> standing_place(const WorldFunction& world, const glm::dvec2& near_m);
 
-/// The body of GET /v1/worlds/{world}/points: height, slope, cover and ridge at each place (x, z). Between lattice
-/// columns heights are interpolated linearly.
+/// The body of GET /v1/worlds/{world}/points: height, slope, material, layer and ridge at each place (x, z). Between
+/// lattice columns heights are interpolated linearly.
 std::string points_json(const WorldFunction& world, std::span<const glm::dvec2> places_m);
+
+/// Longest ray of GET /v1/worlds/{world}/ray, in metres.
+double ray_limit_m(const WorldFunction& world);
+
+/// The body of GET /v1/worlds/{world}/ray: where the ray first meets the surface, or `null`. `direction` has length 1;
+/// `max_m` is within ray_limit_m.
+std::string ray_json(const WorldFunction& world, const glm::dvec3& from_m, const glm::dvec3& direction, double max_m);
 
 }  // namespace talus::server

@@ -105,12 +105,26 @@ describe('a server with the built-in world', () => {
     assert.match(answer.headers['access-control-allow-methods'] ?? '', /GET/);
   });
 
+  test('says what a ray meets, or null', async () => {
+    const down = await json(http, '/v1/worlds/default/ray?from=100,2000,-50&dir=0,-3,0');
+    assert.equal(down.status, 200);
+    const { position, normal, material, distance_m: distance } = down.json;
+    const { json: points } = await json(http, '/v1/worlds/default/points?xz=100,-50');
+    assert.ok(Math.abs(position[1] - points.points[0].height_m) < 3, 'the ground of the points route, but for what is carved');
+    assert.ok(Math.abs(position[1] + distance - 2000) < 1e-3);
+    assert.ok(Math.abs(Math.hypot(...normal) - 1) < 1e-3);
+    assert.equal(typeof material, 'string');
+    const up = await json(http, '/v1/worlds/default/ray?from=100,2000,-50&dir=0,1,0');
+    assert.deepEqual([up.status, up.json], [200, null]);
+    assert.equal((await json(http, '/v1/worlds/default/ray?from=0,0,0&dir=0,0,0')).status, 400);
+  });
+
   test('answers points with every field, and refuses what is not a list of points', async () => {
     const answer = await json(http, '/v1/worlds/default/points?xz=0,0;1000.5,-2000');
     assert.equal(answer.status, 200);
     assert.equal(answer.json.points.length, 2);
     assert.equal(answer.json.points[1].x, 1000.5);
-    for (const field of ['x', 'z', 'height_m', 'slope', 'material', 'ridge']) {
+    for (const field of ['x', 'z', 'height_m', 'slope', 'material', 'layer', 'layer_set', 'ridge']) {
       assert.ok(field in answer.json.points[0], field);
     }
     const many = Array.from({ length: 1001 }, (_, i) => `${i},0`).join(';');

@@ -167,6 +167,22 @@ TEST(Cli, DrawsMapsOfAnySquareAndSize) {
   EXPECT_EQ(talus({"map", "--area", "0,0,1", "-o", out, "--world", scratch / "absent.toml"}), kFailed);
 }
 
+TEST(Cli, DrawsSectionsOfAnyLine) {
+  const Scratch scratch;
+  const std::string out = scratch / "s.png";
+  EXPECT_EQ(talus({"section", "--from", "-200,0", "--to", "150.5,90", "--size", "90x64", "-o", out}), kDone);
+  EXPECT_EQ(content(out).substr(1, 3), "PNG");
+  EXPECT_EQ(talus({"section", "--from", "0,0", "--to", "9e5,0", "--size", "64x64", "--heights", "-100,900", "-o", out}),
+            kDone);
+  for (const char* to : {"0,0", "1,1", "1", "1,2,3", "nan,5", "2e6,0", "2e10,0"}) {
+    EXPECT_EQ(talus({"section", "--from", "0,0", "--to", to, "-o", out}), kUsage) << to;
+  }
+  for (const char* size : {"0x64", "64", "64x9000", "axb", "-64x64"}) {
+    EXPECT_EQ(talus({"section", "--from", "0,0", "--to", "100,0", "--size", size, "-o", out}), kUsage) << size;
+  }
+  EXPECT_EQ(talus({"section", "--from", "0,0", "--to", "100,0", "--heights", "5,5", "-o", out}), kUsage);
+}
+
 TEST(MapPicture, IsTheLatticeItselfWherePixelsFitIt) {
   const WorldFunction world{Manifest()};
   const Picture picture = draw_picture(world, {{512, 512}, 1024}, 64, {});

@@ -90,7 +90,7 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
     HttpMethod method;
     int status;
   };
-  constexpr std::array<Case, 37> kTable{{
+  constexpr std::array<Case, 44> kTable{{
       {"/healthz", "", HttpMethod::kGet, 200},
       {"/readyz", "", HttpMethod::kHead, 200},
       {"/v1/worlds", "", HttpMethod::kGet, 200},
@@ -125,6 +125,13 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
       {"/v1/worlds/default/chunks/13/0/0/0.drc", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/spawn", "near=1e300,0", HttpMethod::kGet, 400},
       {"/v1/worlds/default/points", "xz=0,0;", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,0&dir=0,0,0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,1e300&dir=0,1,0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=10001", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=nan", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOther, 405},
       {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOptions, 204},
       {"", "", HttpMethod::kOptions, 204},
