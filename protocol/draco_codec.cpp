@@ -210,20 +210,6 @@ std::expected<std::vector<std::byte>, CodecError> compress(const draco::Mesh& st
 
 }  // namespace
 
-std::string_view describe(CodecError error) {
-  switch (error) {
-    case CodecError::kMalformed:
-      return "the payload is not a chunk of this lattice";
-    case CodecError::kTooLarge:
-      return "the payload is longer than a message may be";
-    case CodecError::kEmpty:
-      return "a mesh without triangles has no payload";
-    case CodecError::kInternal:
-      return "the codec failed on a mesh of our own";
-  }
-  return "unknown";
-}
-
 MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m) {
   return {cells, std::ldexp(voxel_m, key.lod) / kStepsPerCell};
 }

@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <expected>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "core/grid/chunk_key.hpp"
 #include "core/mesh/chunk_mesh.hpp"
+#include "protocol/codec_error.hpp"
 
 namespace talus::protocol {
 
@@ -21,9 +21,6 @@ struct MeshLattice {
   double step_m = 0.0;  ///< voxel_m * 2^lod / kStepsPerCell; a power of two
 };
 MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m);
-
-enum class CodecError { kMalformed, kTooLarge, kEmpty, kInternal };
-std::string_view describe(CodecError error);
 
 /// A Draco mesh: POSITION (float32 x 3, chunk-local metres, explicit quantisation), NORMAL (float32 x 3, octahedral
 /// kNormalBits), GENERIC unique id 2 (material, uint8) and GENERIC unique id 3 (ridge, uint8). Deterministic. kEmpty

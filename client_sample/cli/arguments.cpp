@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   talus info
   talus get 5/0/1/0 -o chunk.glb
+  talus get 4/0/0/0 -o hills.height
   talus get 4/0/2/0 -o hills.obj --local --manifest worlds/alps.toml
   talus fly --from 0,400,0 --to 2000,400,0 --speed 50 --seconds 60
   talus fly --viewers 50 --seconds 300 --json
@@ -52,8 +53,11 @@ struct Arguments {
 };
 
 void add_get(CLI::App& app, Arguments& arguments) {
-  CLI::App* get = app.add_subcommand("get", "Write one chunk to a file: .drc .glb .obj or .ply");
-  get->add_option("chunk", arguments.get.key, "LOD/X/Y/Z, as 0/12/3/-7; LOD 0 is the finest")->required();
+  CLI::App* get =
+      app.add_subcommand("get", "Write one chunk to a file: .drc .glb .obj .ply .density, or its column: .height");
+  get->add_option("chunk", arguments.get.key,
+                  "LOD/X/Y/Z, as 0/12/3/-7; LOD 0 is the finest; Y does not matter to .height")
+      ->required();
   get->add_option("-o,--output", arguments.get.output, "file; its extension is the format")->required();
   add_server(*get, arguments.get.server);
   CLI::Option* local = get->add_flag("--local", arguments.get.is_local, "evaluate here, without a server");

@@ -1,4 +1,6 @@
 // talus get: one chunk, from a server or evaluated here, into a file.
+#include <expected>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -10,12 +12,18 @@
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
 #include "core/mesh/build_chunk.hpp"
+#include "core/mesh/density_tile.hpp"
+#include "core/mesh/height_tile.hpp"
 #include "protocol/mesh_codec.hpp"
+#include "protocol/tile_codec.hpp"
 
 namespace talus::cli {
 namespace {
 
 using client::HttpAnswer;
+
+/// What a server has ready; other formats are made here from a .drc.
+const std::set<std::string_view> kServedExtensions{".drc", ".glb", ".density", ".height"};
 
 std::string_view extension_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
@@ -37,6 +45,13 @@ ExitCode store(const GetOptions& options, std::string_view bytes) {
   return kDone;
 }
 
+ExitCode store_encoded(const GetOptions& options,
+                       const std::expected<std::vector<std::byte>, protocol::CodecError>& bytes) {
+  if (bytes) return store(options, text_of(*bytes));
+  fmt::print(stderr, "talus: {}\n", protocol::describe(bytes.error()));
+  return kFailed;
+}
+
 /// Writes what is known as a mesh already.
 ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkMesh& mesh, int cells, double voxel_m) {
   const protocol::MeshLattice lattice = protocol::mesh_lattice(key, cells, voxel_m);
@@ -44,18 +59,28 @@ ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkM
   const std::string_view extension = extension_of(options.output);
   if (extension == ".obj") return store(options, encode_obj(mesh, lattice, corner));
   if (extension == ".ply") return store(options, encode_ply(mesh, lattice, corner));
-  const auto bytes =
-      extension == ".glb" ? protocol::encode_glb(mesh, lattice, corner) : protocol::encode_draco(mesh, lattice);
-  if (bytes) return store(options, text_of(*bytes));
-  fmt::print(stderr, "talus: {}\n", protocol::describe(bytes.error()));
-  return kFailed;
+  return store_encoded(options, extension == ".glb" ? protocol::encode_glb(mesh, lattice, corner)
+                                                    : protocol::encode_draco(mesh, lattice));
 }
 
 ExitCode get_local(const GetOptions& options, const ChunkKey& key) {
   const auto manifest = load_manifest(options.manifest);
   if (!manifest) return manifest.error();
   const WorldFunction world(*manifest);
+  const std::string_view extension = extension_of(options.output);
   ChunkScratch scratch;
+  if (extension == ".height" || extension == ".density") world.columns(chunk_columns(world, key), scratch.columns);
+  if (extension == ".height") {
+    HeightTile tile;
+    sample_height_tile(world, scratch.columns, tile);
+    return store_encoded(options, protocol::encode_height(tile, key));
+  }
+  if (extension == ".density") {
+    DensityTile tile;
+    const ChunkKind kind = sample_density_tile(world, key, scratch, tile);
+    if (kind != ChunkKind::kMesh) return no_surface(key, kind == ChunkKind::kAir ? "air" : "rock");
+    return store_encoded(options, protocol::encode_density(tile, key));
+  }
   ChunkMesh mesh;
   const ChunkKind kind = build_chunk(world, key, scratch, mesh);
   if (kind != ChunkKind::kMesh) return no_surface(key, kind == ChunkKind::kAir ? "air" : "rock");
@@ -82,14 +107,18 @@ ExitCode get_remote(const GetOptions& options, const ChunkKey& key) {
   }
   const std::string world = "/v1/worlds/" + options.server.world;
   const std::string_view extension = extension_of(options.output);
-  std::string target = world + "/chunks/" + format_chunk_key(key) + (extension == ".glb" ? ".glb" : ".drc");
+  const bool is_stored_as_sent = kServedExtensions.contains(extension);
+  const std::string target =
+      extension == ".height"
+          ? fmt::format("{}/columns/{}/{}/{}.height", world, key.lod, key.x, key.z)
+          : fmt::format("{}/chunks/{}{}", world, format_chunk_key(key), is_stored_as_sent ? extension : ".drc");
   const auto answer = fetch(*server, target);
   if (!answer) return kFailed;
   if (answer->status == 204) {
     const auto kind = answer->fields.find("talus-chunk");
     return no_surface(key, kind == answer->fields.end() ? "air or rock" : kind->second);
   }
-  if (extension == ".drc" || extension == ".glb") return store(options, answer->body);
+  if (is_stored_as_sent) return store(options, answer->body);
 
   const auto manifest = fetch(*server, world);
   if (!manifest) return kFailed;
@@ -119,8 +148,9 @@ ExitCode get(const GetOptions& options) {
     return kUsage;
   }
   const std::string_view extension = extension_of(options.output);
-  if (extension != ".drc" && extension != ".glb" && extension != ".obj" && extension != ".ply") {
-    fmt::print(stderr, "talus: \"{}\" has to end in .drc, .glb, .obj or .ply: that is the format\n", options.output);
+  if (!kServedExtensions.contains(extension) && extension != ".obj" && extension != ".ply") {
+    fmt::print(stderr, "talus: \"{}\" has to end in .drc, .glb, .obj, .ply, .density or .height: that is the format\n",
+               options.output);
     return kUsage;
   }
   return options.is_local ? get_local(options, *key) : get_remote(options, *key);

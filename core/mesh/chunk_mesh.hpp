@@ -15,6 +15,12 @@ enum class ChunkKind : std::uint8_t { kAir, kRock, kMesh };
 /// floats: a vertex lies at corner + step * (voxel_m * 2^lod / kStepsPerCell).
 inline constexpr int kStepsPerCell = 64;
 
+/// A ridge map's -1 (crease) .. +1 (ridge) as it travels: 0..255, 128 is neither.
+constexpr std::uint8_t ridge_byte(float ridge) {
+  const float held = ridge < -1.0F ? -1.0F : ridge > 1.0F ? 1.0F : ridge;
+  return static_cast<std::uint8_t>(held * 127.0F + 128.0F);
+}
+
 /// Triangles wind counter-clockwise seen from the air. Vertices are shared inside the chunk; the surface is closed but
 /// for the chunk's faces. Arrays of vertices have equal length.
 struct ChunkMesh {

@@ -57,8 +57,7 @@ MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
         columns_.stack_m[from_column] + (columns_.stack_m[to_column] - columns_.stack_m[from_column]) * t;
     material = world_.rock(stack_m, columns_.choice[from_column], height_m, column_voxel);
   }
-  return {position, normal, static_cast<std::uint8_t>(material),
-          static_cast<std::uint8_t>(std::clamp(ridge, -1.0f, 1.0f) * 127.0f + 128.0f)};
+  return {position, normal, static_cast<std::uint8_t>(material), ridge_byte(ridge)};
 }
 
 }  // namespace talus

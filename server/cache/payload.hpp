@@ -15,10 +15,17 @@
 
 namespace talus::server {
 
-/// kMap is a picture of a map tile: key.lod is its zoom, key.x and key.z are its x and y.
-enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kMap };
+/// kHeight is of a whole column of chunks; kMap is a picture of a map tile: key.lod is its zoom, key.x and key.z are
+/// its x and y. The others are of one chunk.
+enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap };
+inline constexpr std::size_t kPayloadFormats = 5;
 
-/// Encoded bytes of one chunk or map tile. Without bytes when the chunk is all air or all rock.
+/// Whether a payload's name has an origin its positions are counted from.
+constexpr bool has_origin(PayloadFormat format) {
+  return format == PayloadFormat::kGlb;
+}
+
+/// Encoded bytes of one chunk, column or map tile. Without bytes when the chunk is all air or all rock.
 struct ChunkPayload {
   ChunkKind kind = ChunkKind::kAir;
   std::vector<std::byte> bytes;
@@ -29,8 +36,8 @@ using PayloadRef = std::shared_ptr<const ChunkPayload>;
 struct PayloadName {
   std::uint32_t world = 0;  ///< index of the world in this server
   PayloadFormat format = PayloadFormat::kDraco;
-  ChunkKey key;
-  glm::dvec3 origin{};  ///< metres; what a glb is translated against, zero for other formats
+  ChunkKey key;         ///< of a column: y is 0
+  glm::dvec3 origin{};  ///< metres; zero where has_origin is false
   friend bool operator==(const PayloadName&, const PayloadName&) = default;
 };
 
@@ -38,7 +45,7 @@ struct PayloadNameHash {
   std::size_t operator()(const PayloadName& name) const noexcept {
     std::uint64_t h =
         mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 8) | static_cast<std::uint8_t>(name.format));
-    if (name.format == PayloadFormat::kGlb) {
+    if (has_origin(name.format)) {
       // + 0.0 makes one of the two zeros, which are equal.
       for (const double c : {name.origin.x, name.origin.y, name.origin.z})
         h = mix64(h, std::bit_cast<std::uint64_t>(c + 0.0));

@@ -82,7 +82,7 @@ HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat
     answer.payload = std::move(payload);
     return answer;
   }
-  answer.content_type = format == PayloadFormat::kDraco ? "application/octet-stream" : "model/gltf-binary";
+  answer.content_type = has_origin(format) ? "model/gltf-binary" : "application/octet-stream";
   answer.fields = "Talus-Chunk: mesh\r\n";
   answer.payload = std::move(payload);
   return answer;

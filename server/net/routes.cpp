@@ -11,6 +11,7 @@
 
 #include "core/grid/chunk_key.hpp"
 #include "core/map/map_tile.hpp"
+#include "server/net/payload_routes.hpp"
 #include "server/net/url_text.hpp"
 #include "server/world/place_query.hpp"
 
@@ -19,20 +20,11 @@ namespace talus::server {
 namespace {
 
 constexpr std::size_t kSegmentsMax = 12;
-using Segments = std::span<const std::string_view>;
 
 constexpr std::string_view kAllowReads = "Allow: GET, HEAD, OPTIONS\r\n";
 constexpr std::string_view kPreflight =
     "Allow: GET, HEAD, OPTIONS\r\nAccess-Control-Allow-Methods: GET, HEAD, OPTIONS\r\n"
     "Access-Control-Allow-Headers: If-None-Match, Content-Type\r\nAccess-Control-Max-Age: 86400\r\n";
-
-AnswerRoute bad_request(std::string_view code, std::string_view message) {
-  return {error_answer(400, code, message)};
-}
-
-AnswerRoute not_found(std::string_view code, std::string_view message) {
-  return {error_answer(404, code, message)};
-}
 
 AnswerRoute text_answer(int status, std::string_view text) {
   HttpAnswer answer;
@@ -53,63 +45,6 @@ AnswerRoute cacheable_json(const HttpRequest& request, const std::string& body, 
   answer.etag = etag;
   answer.cache_control = kNoCache;
   return {std::move(answer)};
-}
-
-/// Three numbers of `origin=`, each within what a chunk's corner can be.
-std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out) {
-  constexpr double kOriginMax = 1.0e12;
-  const QueryValue value = query_value(query, "origin");
-  if (value.state == QueryState::kAbsent) return std::nullopt;
-  const auto numbers = decimal_numbers(value.value, 3);
-  const auto inside = [](double v) { return std::abs(v) <= kOriginMax; };
-  if (value.state != QueryState::kPresent || !numbers || !std::all_of(numbers->begin(), numbers->end(), inside)) {
-    return bad_request("bad_origin", "origin: expected x,y,z in metres, each within +-1e12");
-  }
-  out = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-  return std::nullopt;
-}
-
-/// lod, x, y, z, where the last also carries the format.
-Route chunk_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
-  constexpr std::array<std::string_view, 4> kNames{"lod", "x", "y", "z"};
-  if (parts.size() != kNames.size()) {
-    return bad_request("bad_chunk", "chunk: expected chunks/{lod}/{x}/{y}/{z} and .drc or .glb");
-  }
-  PayloadName name;
-  name.world = static_cast<std::uint32_t>(world);
-  std::string_view z = parts[3];
-  if (z.ends_with(".drc")) {
-    name.format = PayloadFormat::kDraco;
-  } else if (z.ends_with(".glb")) {
-    name.format = PayloadFormat::kGlb;
-  } else {
-    return bad_request("bad_format", "format: a chunk ends in .drc or .glb");
-  }
-  z.remove_suffix(4);
-  const std::array<std::string_view, 4> texts{parts[0], parts[1], parts[2], z};
-  const std::array<std::int32_t*, 4> values{&name.key.lod, &name.key.x, &name.key.y, &name.key.z};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    const std::int32_t low = i == 0 ? 0 : -kChunkLimit;
-    const std::int32_t high = i == 0 ? kLodMax : kChunkLimit;
-    const auto value = whole_number(texts[i]);
-    if (!value || *value < low || *value > high) {
-      return bad_request(fmt::format("bad_{}", kNames[i]),
-                         fmt::format("{}: expected a whole number from {} to {}", kNames[i], low, high));
-    }
-    *values[i] = *value;
-  }
-  if (name.format == PayloadFormat::kGlb) {
-    if (auto refused = read_origin(request.query, name.origin)) return std::move(*refused);
-  }
-  const std::string& etag = context.worlds[world]->etag(name.format);
-  if (names_etag(request.field("if-none-match").value_or(""), etag)) {
-    HttpAnswer answer;
-    answer.status = 304;
-    answer.etag = etag;
-    answer.cache_control = kImmutable;
-    return AnswerRoute{std::move(answer)};
-  }
-  return ChunkRoute{name};
 }
 
 /// zoom, x, y.png.
@@ -136,15 +71,7 @@ Route map_route(const HttpRequest& request, const RouteContext& context, std::si
   name.world = static_cast<std::uint32_t>(world);
   name.format = PayloadFormat::kMap;
   name.key = {values[0], values[1], 0, values[2]};
-  const std::string& etag = context.worlds[world]->etag(name.format);
-  if (names_etag(request.field("if-none-match").value_or(""), etag)) {
-    HttpAnswer answer;
-    answer.status = 304;
-    answer.etag = etag;
-    answer.cache_control = kImmutable;
-    return AnswerRoute{std::move(answer)};
-  }
-  return ChunkRoute{name};
+  return payload_route(request, context, name);
 }
 
 std::optional<glm::dvec2> read_place(std::string_view text, const WorldFunction& world) {
@@ -228,6 +155,7 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
     return cacheable_json(request, found.manifest_json(), found.manifest_etag());
   }
   if (parts[1] == "chunks") return chunk_route(request, context, world, parts.subspan(2));
+  if (parts[1] == "columns") return column_route(request, context, world, parts.subspan(2));
   if (parts[1] == "map") return map_route(request, context, world, parts.subspan(2));
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "points") return points_route(request, context, world);
@@ -275,7 +203,7 @@ Route resolve_path(const HttpRequest& request, const RouteContext& context) {
     return world_route(request, context, Segments(parts).subspan(3, *count - 3));
   }
   if (!count && parts[2] == "worlds" && parts[4] == "chunks") {
-    return bad_request("bad_chunk", "chunk: expected chunks/{lod}/{x}/{y}/{z} and .drc or .glb");
+    return bad_request("bad_chunk", kChunkShape);
   }
   return not_found("unknown_route", "there is nothing of that name here");
 }

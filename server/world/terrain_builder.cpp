@@ -7,6 +7,7 @@
 #include "core/map/map_tile.hpp"
 #include "protocol/mesh_codec.hpp"
 #include "protocol/png.hpp"
+#include "protocol/tile_codec.hpp"
 
 namespace talus::server {
 
@@ -20,27 +21,59 @@ constexpr std::size_t kColumnBlocks = 256;
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
     : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
 
+void TerrainBuilder::load_columns(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  ColumnBlock& columns = scratch.build.columns;
+  const ColumnName key{name.world, name.key.lod, name.key.x, name.key.z};
+  if (columns_.load(key, columns)) return;
+  world.columns(chunk_columns(world, name.key), columns);
+  columns_.store(key, columns);
+  footprints_.store({name.world, name.key.lod, name.key.x, name.key.z}, {columns.height_low_m, columns.height_high_m});
+}
+
 /// What core's build_chunk does, with heights remembered for long and columns for a while.
-ChunkKind TerrainBuilder::build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
-  scratch.mesh.clear();
+ChunkKind TerrainBuilder::load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  const auto kind_within = [&](float low_m, float high_m) {
+    return kind_by_heights(world, name.key, static_cast<double>(low_m), static_cast<double>(high_m));
+  };
   const glm::dvec2 range = world.height_range_m();
   if (const ChunkKind kind = kind_by_heights(world, name.key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
-  const Footprint footprint{name.world, name.key.lod, name.key.x, name.key.z};
-  if (const auto known = footprints_.load(footprint)) {
-    const ChunkKind kind =
-        kind_by_heights(world, name.key, static_cast<double>(known->low_m), static_cast<double>(known->high_m));
-    if (kind != ChunkKind::kMesh) return kind;
+  if (const auto known = footprints_.load({name.world, name.key.lod, name.key.x, name.key.z})) {
+    if (const ChunkKind kind = kind_within(known->low_m, known->high_m); kind != ChunkKind::kMesh) return kind;
   }
-  const ColumnName columns{name.world, name.key.lod, name.key.x, name.key.z};
-  if (!columns_.load(columns, scratch.build.columns)) {
-    world.columns(chunk_columns(world, name.key), scratch.build.columns);
-    columns_.store(columns, scratch.build.columns);
-    footprints_.store(footprint, {scratch.build.columns.height_low_m, scratch.build.columns.height_high_m});
+  load_columns(name, world, scratch);
+  return kind_within(scratch.build.columns.height_low_m, scratch.build.columns.height_high_m);
+}
+
+ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  if (name.format == PayloadFormat::kHeight) {
+    load_columns(name, world, scratch);
+    sample_height_tile(world, scratch.build.columns, scratch.height);
+    return ChunkKind::kMesh;
   }
-  const auto low_m = static_cast<double>(scratch.build.columns.height_low_m);
-  const auto high_m = static_cast<double>(scratch.build.columns.height_high_m);
-  if (const ChunkKind kind = kind_by_heights(world, name.key, low_m, high_m); kind != ChunkKind::kMesh) return kind;
+  if (const ChunkKind kind = load_if_crossed(name, world, scratch); kind != ChunkKind::kMesh) return kind;
+  if (name.format == PayloadFormat::kDensity) {
+    return sample_density_tile(world, name.key, scratch.build, scratch.density);
+  }
   return mesh_chunk(world, name.key, sample_chunk(world, name.key, scratch.build), scratch.build, scratch.mesh);
+}
+
+TerrainBuilder::Bytes TerrainBuilder::encode(const PayloadName& name, const WorldFunction& world,
+                                             const Scratch& scratch) const {
+  const protocol::MeshLattice lattice = protocol::mesh_lattice(name.key, world.cells(), world.voxel_m());
+  switch (name.format) {
+    case PayloadFormat::kDraco:
+      return protocol::encode_draco(scratch.mesh, lattice);
+    case PayloadFormat::kGlb:
+      return protocol::encode_glb(scratch.mesh, lattice,
+                                  box_of(name.key, world.cells(), world.voxel_m()).low - name.origin);
+    case PayloadFormat::kDensity:
+      return protocol::encode_density(scratch.density, name.key);
+    case PayloadFormat::kHeight:
+      return protocol::encode_height(scratch.height, name.key);
+    case PayloadFormat::kMap:
+      break;
+  }
+  return std::unexpected(protocol::CodecError::kInternal);
 }
 
 ChunkPayload TerrainBuilder::build_map(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
@@ -64,18 +97,14 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   if (name.format == PayloadFormat::kMap) return build_map(name, world, scratch);
 
   const Instant start = clock_.now();
-  const ChunkKind kind = build_mesh(name, world, scratch);
+  const ChunkKind kind = sample(name, world, scratch);
   const Instant built = clock_.now();
   metrics_.record(Hop::kBuildChunk, built - start);
 
   if (kind != ChunkKind::kMesh) return ChunkPayload{kind, {}};
   if (token.is_cancelled()) return std::nullopt;
 
-  const protocol::MeshLattice lattice = protocol::mesh_lattice(name.key, world.cells(), world.voxel_m());
-  auto bytes = name.format == PayloadFormat::kGlb
-                   ? protocol::encode_glb(scratch.mesh, lattice,
-                                          box_of(name.key, world.cells(), world.voxel_m()).low - name.origin)
-                   : protocol::encode_draco(scratch.mesh, lattice);
+  Bytes bytes = encode(name, world, scratch);
   metrics_.record(Hop::kEncodeChunk, clock_.now() - built);
   if (!bytes) throw std::runtime_error("encode_chunk: " + std::string(protocol::describe(bytes.error())));
   // The payload stays for long: what the encoder reserved beyond it is given back.

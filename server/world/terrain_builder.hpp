@@ -1,10 +1,14 @@
 // The builder of the real server: evaluates the world, extracts, encodes.
 #pragma once
 
+#include <expected>
 #include <vector>
 
 #include "core/map/draw_map.hpp"
 #include "core/mesh/build_chunk.hpp"
+#include "core/mesh/density_tile.hpp"
+#include "core/mesh/height_tile.hpp"
+#include "protocol/codec_error.hpp"
 #include "server/cache/column_memo.hpp"
 #include "server/observe/metrics.hpp"
 #include "server/schedule/clock.hpp"
@@ -26,12 +30,21 @@ class TerrainBuilder final : public ChunkBuilder {
   struct alignas(64) Scratch {
     ChunkScratch build;
     ChunkMesh mesh;
+    HeightTile height;
+    DensityTile density;
     MapScratch map;
     std::vector<std::uint8_t> rgb;  ///< of the tile being drawn
   };
 
   ChunkPayload build_map(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
-  ChunkKind build_mesh(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  using Bytes = std::expected<std::vector<std::byte>, protocol::CodecError>;
+
+  /// Columns under the chunk into `scratch`, remembered or evaluated.
+  void load_columns(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  /// Air, rock, or kMesh with the chunk's columns in `scratch`.
+  ChunkKind load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  ChunkKind sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  Bytes encode(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
 
   const Worlds& worlds_;
   const Clock& clock_;

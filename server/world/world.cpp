@@ -11,10 +11,8 @@ namespace talus::server {
 namespace {
 
 /// Raised when the bytes of a format change for one and the same mesh.
-constexpr std::string_view kDracoEdition = "drc1";
-constexpr std::string_view kGlbEdition = "glb1";
-/// Raised when maps look different.
-constexpr std::string_view kMapEdition = "map1";
+/// By format; a map's is raised when maps look different.
+constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc1", "glb1", "density1", "height1", "map1"};
 constexpr std::string_view kManifestEdition = "man1";
 /// Edits are not kept yet: every chunk is as its world made it.
 constexpr std::string_view kRevision = "0";
@@ -32,10 +30,9 @@ World::World(Manifest manifest)
       hash_(protocol::world_hash(function_.manifest())),
       shape_{function_.cells(), function_.voxel_m(), function_.height_range_m()},
       manifest_json_(protocol::manifest_json(function_.manifest())),
-      etag_draco_(etag_of(hash_, kDracoEdition)),
-      etag_glb_(etag_of(hash_, kGlbEdition)),
-      etag_map_(etag_of(hash_, kMapEdition)),
-      etag_manifest_(etag_of(hash_, kManifestEdition)) {}
+      etag_manifest_(etag_of(hash_, kManifestEdition)) {
+  std::ranges::transform(kEditions, etags_.begin(), [&](std::string_view edition) { return etag_of(hash_, edition); });
+}
 
 std::size_t world_index(const Worlds& worlds, std::string_view name) {
   const auto found =

@@ -1,6 +1,7 @@
 // One world as this server hosts it: the function, and what every door says about it. Immutable; any thread.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,10 +26,7 @@ class World {
   /// The body of GET /v1/worlds/{world}.
   const std::string& manifest_json() const { return manifest_json_; }
   /// Quoted, strong, and known without generating: world hash, revision and format decide every byte of a payload.
-  const std::string& etag(PayloadFormat format) const {
-    if (format == PayloadFormat::kMap) return etag_map_;
-    return format == PayloadFormat::kDraco ? etag_draco_ : etag_glb_;
-  }
+  const std::string& etag(PayloadFormat format) const { return etags_[static_cast<std::size_t>(format)]; }
   /// Quoted: of the manifest's body.
   const std::string& manifest_etag() const { return etag_manifest_; }
 
@@ -37,9 +35,7 @@ class World {
   std::string hash_;
   protocol::WorldShape shape_;
   std::string manifest_json_;
-  std::string etag_draco_;
-  std::string etag_glb_;
-  std::string etag_map_;
+  std::array<std::string, kPayloadFormats> etags_;
   std::string etag_manifest_;
 };
 

@@ -5,7 +5,7 @@ import { after, before, describe, test } from 'node:test';
 import gltf from 'gltf-validator';
 import { request } from './frame/http.mjs';
 import { startServer } from './frame/server.mjs';
-import { chunkPath, manifestOf, meshPath, surfaceKeys } from './frame/terrain.mjs';
+import { chunkPath, columnPath, manifestOf, meshPath, surfaceKeys } from './frame/terrain.mjs';
 
 const limit = 2 ** 30 - 1;
 const places = [[40, 40], [-2500, 1800], [30_000, -70_000], [-1, -1], [1_000_000_000, -1_000_000_000]];
@@ -68,9 +68,23 @@ describe('chunks', () => {
     assert.ok(assets >= 6, `${assets} assets`);
   });
 
+  test('are density tiles and height tiles too', async () => {
+    for (const lod of [0, 3, 9]) {
+      const height = await request(http, columnPath(manifest, { lod, x: 1, z: -2 }));
+      assert.equal(height.status, 200);
+      assert.equal(height.body.subarray(0, 4).toString(), 'tlsh');
+      for (const key of await surfaceKeys(http, manifest, lod, places)) {
+        const [mesh, density] = await Promise.all(['drc', 'density'].map((format) => request(http, chunkPath(manifest, key, format))));
+        assert.equal(density.status, mesh.status, 'there is a density where there is a mesh');
+        assert.equal(density.headers['talus-chunk'], mesh.headers['talus-chunk']);
+        if (density.status === 200) assert.equal(density.body.subarray(0, 4).toString(), 'tlsd');
+      }
+    }
+  });
+
   test('answer 304 to their own ETag, and 200 to another', async () => {
-    for (const format of ['drc', 'glb']) {
-      const path = await meshPath(server, format);
+    for (const format of ['drc', 'glb', 'density', 'height']) {
+      const path = format === 'height' ? columnPath(manifest, { lod: 2, x: 1, z: -1 }) : await meshPath(server, format);
       const first = await request(http, path);
       const etag = first.headers.etag;
       for (const match of [etag, `"other", ${etag}`, `W/${etag}`, '*']) {
@@ -79,7 +93,13 @@ describe('chunks', () => {
         assert.equal(again.body.length, 0);
         assert.equal(again.headers.etag, etag);
       }
-      assert.equal((await request(http, path, { headers: { 'If-None-Match': '"other"' } })).status, 200);
+      const whole = await request(http, `${path}?rev=0`, { headers: { 'If-None-Match': '"other"' } });
+      assert.equal(whole.status, 200);
+      assert.equal(whole.headers['cache-control'], 'public, max-age=31536000, immutable');
+      assert.equal(whole.headers['access-control-allow-origin'], '*');
+      const head = await request(http, path, { method: 'HEAD' });
+      assert.equal(head.headers['content-length'], String(whole.body.length));
+      assert.equal(head.body.length, 0);
     }
     const drc = await request(http, await meshPath(server, 'drc'));
     const glb = await request(http, await meshPath(server, 'glb'));

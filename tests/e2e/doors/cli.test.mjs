@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { request } from './frame/http.mjs';
 import { program, startServer } from './frame/server.mjs';
-import { meshPath } from './frame/terrain.mjs';
+import { columnPath, meshPath } from './frame/terrain.mjs';
 
 const talusProgram = process.env.TALUS ?? join(dirname(program), 'talus');
 
@@ -38,9 +38,11 @@ describe('talus', () => {
   });
 
   test('gets the bytes that HTTP gives, and makes the same without a server', async () => {
-    for (const format of ['drc', 'glb']) {
-      const path = await meshPath(server, format);
-      const key = /chunks\/(.*)\./.exec(path)[1];
+    for (const format of ['drc', 'glb', 'density', 'height']) {
+      const mesh = await meshPath(server, format === 'height' ? 'drc' : format);
+      const key = /chunks\/(.*)\./.exec(mesh)[1];
+      const [lod, x, , z] = key.split('/').map(Number);
+      const path = format === 'height' ? columnPath({ name: 'default' }, { lod, x, z }) : mesh;
       const [served, local] = [join(folder, `served.${format}`), join(folder, `local.${format}`)];
       assert.equal((await talus('get', key, '-o', served, ...at)).code, 0);
       assert.equal((await talus('get', key, '-o', local, '--local')).code, 0);

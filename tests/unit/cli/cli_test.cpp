@@ -99,6 +99,13 @@ TEST(Cli, WritesALocalChunkInEveryFormat) {
     EXPECT_EQ(talus({"get", "12/0/0/0", "-o", scratch / name, "--local"}), kDone) << name;
     EXPECT_GT(content(scratch / name).size(), 500U) << name;
   }
+  // At the coarsest LOD all land lies between two layers of samples, the lower one at the sea.
+  for (const char* name : {"c.density", "c.height"}) {
+    EXPECT_EQ(talus({"get", "10/0/0/0", "-o", scratch / name, "--local"}), kDone) << name;
+    EXPECT_GT(content(scratch / name).size(), 500U) << name;
+  }
+  EXPECT_EQ(content(scratch / "c.height").substr(0, 4), "tlsh");
+  EXPECT_EQ(content(scratch / "c.density").substr(0, 4), "tlsd");
   EXPECT_EQ(content(scratch / "c.glb").substr(0, 4), "glTF");
   EXPECT_EQ(content(scratch / "c.drc").substr(0, 5), "DRACO");
 }

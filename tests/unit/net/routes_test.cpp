@@ -59,6 +59,15 @@ TEST_F(Routes, ReadAMapTile) {
   EXPECT_EQ(tile->name.key, (ChunkKey{5, -4, 0, 7}));
 }
 
+TEST_F(Routes, ReadTheOtherFormatsOfChunksAndColumns) {
+  const Route density = resolve_target("/v1/worlds/default/chunks/3/-4/5/6.density", "rev=0");
+  EXPECT_EQ(std::get<ChunkRoute>(density).name.key, (ChunkKey{3, -4, 5, 6}));
+  EXPECT_EQ(std::get<ChunkRoute>(density).name.format, PayloadFormat::kDensity);
+  const Route height = resolve_target("/v1/worlds/default/columns/12/-4/6.height");
+  EXPECT_EQ(std::get<ChunkRoute>(height).name.key, (ChunkKey{12, -4, 0, 6}));
+  EXPECT_EQ(std::get<ChunkRoute>(height).name.format, PayloadFormat::kHeight);
+}
+
 TEST_F(Routes, NameTheFieldOfEveryMalformedCoordinate) {
   for (const std::string_view bad : {"2147483648", "-2147483649", "9007199254740992",
                                      "1073741824", "1e300",       "1.0",
@@ -90,7 +99,7 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
     HttpMethod method;
     int status;
   };
-  constexpr std::array<Case, 44> kTable{{
+  constexpr std::array<Case, 53> kTable{{
       {"/healthz", "", HttpMethod::kGet, 200},
       {"/readyz", "", HttpMethod::kHead, 200},
       {"/v1/worlds", "", HttpMethod::kGet, 200},
@@ -132,6 +141,15 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
       {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=10001", HttpMethod::kGet, 400},
       {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=0", HttpMethod::kGet, 400},
       {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=nan", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.drc", "rev=-1", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/chunks/0/0/0/0.density", "rev=x", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/0/0/0", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/0/0/0/0.height", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/13/0/0.height", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/0/1073741824/0.height", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/0/0/x.height", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/columns/0/0/0.height", "", HttpMethod::kOther, 405},
       {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOther, 405},
       {"/v1/worlds/default/chunks/0/0/0/0.drc", "", HttpMethod::kOptions, 204},
       {"", "", HttpMethod::kOptions, 204},

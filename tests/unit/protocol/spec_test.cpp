@@ -6,6 +6,7 @@
 
 #include "protocol/limits.hpp"
 #include "protocol/message.hpp"
+#include "protocol/tile_codec.hpp"
 
 namespace talus::protocol {
 namespace {
@@ -45,6 +46,27 @@ TEST(Spec, ShowsTheBytesThatAreSent) {
   const std::vector<std::byte> head = encode(ChunkHead{{2, -3, 4, -5}, 6, ChunkKind::kMesh, 3});
   ASSERT_EQ(head.size() + 3, bytes.size());
   EXPECT_TRUE(std::equal(head.begin(), head.end(), bytes.begin()));
+}
+
+TEST(Spec, ShowsTilesThatDecodeToWhatItSaysAndEncodeToWhatItShows) {
+  const std::vector<std::byte> height_bytes = hex_block(spec(), "height");
+  const auto height = decode_height(height_bytes);
+  ASSERT_TRUE(height);
+  EXPECT_EQ(height->key, (ChunkKey{2, -3, 0, 5}));
+  EXPECT_EQ(height->tile.step_m, 1.0 / 16);
+  EXPECT_EQ(height->tile.heights, (std::vector<std::int32_t>{100, 103, 110, 98, 101, -200, 97, 100, 106}));
+  EXPECT_EQ(height->tile.ridges, (std::vector<std::uint8_t>{128, 130, 127, 128, 131, 0, 128, 128, 255}));
+  EXPECT_EQ(height->tile.materials, (std::vector<std::uint8_t>{3, 3, 3, 3, 0, 4, 3, 1, 5}));
+  EXPECT_EQ(encode_height(height->tile, height->key), height_bytes);
+
+  const std::vector<std::byte> density_bytes = hex_block(spec(), "density");
+  const auto density = decode_density(density_bytes);
+  ASSERT_TRUE(density);
+  EXPECT_EQ(density->key, (ChunkKey{2, -3, 4, 5}));
+  EXPECT_EQ(density->tile.step_m, 1.0 / 64);
+  EXPECT_EQ(density->tile.densities, (std::vector<std::int16_t>{-300, -290, -310, -301, -40, -30, 5, 200}));
+  EXPECT_EQ(density->tile.materials, (std::vector<std::uint8_t>{7, 7, 8, 7, 3, 3, 255, 255}));
+  EXPECT_EQ(encode_density(density->tile, density->key), density_bytes);
 }
 
 TEST(Spec, NamesTheLimitsOfTheCode) {

@@ -17,6 +17,10 @@ export function chunkPath(manifest, { lod, x, y, z }, format) {
   return `/v1/worlds/${manifest.name}/chunks/${lod}/${x}/${y}/${z}.${format}`;
 }
 
+export function columnPath(manifest, { lod, x, z }) {
+  return `/v1/worlds/${manifest.name}/columns/${lod}/${x}/${z}.height`;
+}
+
 export async function manifestOf(server) {
   return (await json(server.ready.http, `/v1/worlds/${server.ready.worlds[0]}`)).json;
 }

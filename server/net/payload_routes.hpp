@@ -1,0 +1,26 @@
+// Routes of payloads: chunks and columns by key and format. Pure.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "server/net/routes.hpp"
+
+namespace talus::server {
+
+using Segments = std::span<const std::string_view>;
+
+inline constexpr std::string_view kChunkShape = "chunk: expected chunks/{lod}/{x}/{y}/{z} and .drc, .glb or .density";
+
+AnswerRoute bad_request(std::string_view code, std::string_view message);
+AnswerRoute not_found(std::string_view code, std::string_view message);
+
+/// A payload of a world that exists, or 304 without work.
+Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name);
+/// `parts` are what follows `chunks/`: lod, x, y, z, where the last also carries the format.
+Route chunk_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
+/// `parts` are what follows `columns/`: lod, x, z.height.
+Route column_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
+
+}  // namespace talus::server
