@@ -14,6 +14,7 @@
 #include <glm/common.hpp>
 
 #include "core/base/check.hpp"
+#include "core/mesh/seam_cell.hpp"
 #include "protocol/coloured_draco.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/mesh_codec.hpp"
@@ -25,11 +26,10 @@ namespace {
 enum AttributeId : int { kPosition, kNormal, kMaterial, kRidge, kAttributes, kColour = kAttributes };
 static_assert(kMaterial == kDracoMaterialId && kRidge == kDracoRidgeId && kColour == kDracoColourId);
 
-/// Marching cubes makes at most 5 triangles a cell; `cells` is at most 32 in any world.
-constexpr int kCellsMax = 32;
-constexpr std::size_t faces_max(int cells) {
-  return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) * 5;
-}
+/// `cells` is at most 32 in any world, and a strip has those of the next finer LOD.
+constexpr int kCellsMax = 2 * 32;
+/// Marching cubes makes at most 5 triangles a cell.
+constexpr std::size_t kCellTrianglesMax = 5;
 
 bool is_power_of_two(double v) {
   int exponent = 0;
@@ -211,7 +211,14 @@ std::expected<std::vector<std::byte>, CodecError> compress(const draco::Mesh& st
 }  // namespace
 
 MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m) {
-  return {cells, std::ldexp(voxel_m, key.lod) / kStepsPerCell};
+  const auto edge = static_cast<std::size_t>(cells);
+  return {cells, std::ldexp(voxel_m, key.lod) / kStepsPerCell, edge * edge * edge * kCellTrianglesMax};
+}
+
+MeshLattice strip_lattice(const ChunkKey& key, int cells, double voxel_m) {
+  TALUS_CHECK(key.lod > 0);
+  const auto edge = static_cast<std::size_t>(cells);
+  return {2 * cells, std::ldexp(voxel_m, key.lod - 1) / kStepsPerCell, edge * edge * kSeamTrianglesMax};
 }
 
 std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
@@ -260,14 +267,13 @@ std::expected<ColouredDraco, CodecError> encode_coloured_draco(const ChunkMesh& 
 std::expected<ChunkMesh, CodecError> decode_draco(std::span<const std::byte> bytes, const MeshLattice& lattice) {
   TALUS_CHECK(lattice.cells > 0 && lattice.cells <= kCellsMax && is_power_of_two(lattice.step_m));
   if (bytes.size() > kOutboundMessageBytesMax) return std::unexpected(CodecError::kTooLarge);
-  const std::size_t triangles_max = faces_max(lattice.cells);
-  if (!counts_are_bounded(bytes, triangles_max)) return std::unexpected(CodecError::kMalformed);
+  if (!counts_are_bounded(bytes, lattice.triangles_max)) return std::unexpected(CodecError::kMalformed);
   // Draco reports most faults; those it meets as standard exceptions (a length that no vector has) are faults as well.
   try {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Mesh mesh;
-    BoundedDecoder decoder(3 * triangles_max);
+    BoundedDecoder decoder(3 * lattice.triangles_max);
     const draco::DecoderOptions options;
     if (!decoder.Decode(options, &buffer, &mesh).ok()) return std::unexpected(CodecError::kMalformed);
     ChunkMesh out;

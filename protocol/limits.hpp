@@ -8,7 +8,9 @@
 namespace talus::protocol {
 
 inline constexpr std::uint16_t kVersionLow = 1;   ///< oldest version this build speaks
-inline constexpr std::uint16_t kVersionHigh = 1;  ///< newest
+inline constexpr std::uint16_t kVersionHigh = 2;  ///< newest
+/// First version in which strips are sent.
+inline constexpr std::uint16_t kVersionOfStrips = 2;
 
 /// Largest message a client may send: head and all, checked on the declared length before anything is allocated.
 inline constexpr std::size_t kInboundMessageBytesMax = 64 * 1024;
@@ -22,7 +24,7 @@ inline constexpr std::size_t kWantedKeysMax = 16'384;
 inline constexpr std::size_t kPrefixBytes = 4;
 /// Largest head. A `welcome` carries the manifest; all else is far below 64 KiB.
 inline constexpr std::size_t kHeadBytesMax = 128 * 1024;
-/// Prefix and head of any `chunk` message; what is left of kOutboundMessageBytesMax is its payload.
+/// Prefix and head of any `chunk` or `strip` message; what is left of kOutboundMessageBytesMax is its payload.
 inline constexpr std::size_t kChunkHeadBytesMax = 128;
 /// Bytes of texts inside messages, UTF-8: names (world, session, format, world hash), tokens, sentences.
 inline constexpr std::size_t kNameBytesMax = 64;

@@ -1,5 +1,5 @@
-// Chunk meshes as Draco and as glTF binary. SPEC.md sections "Draco payload" and "glTF". No Draco type leaves this
-// file's source.
+// Chunk meshes and seam strips as Draco, chunk meshes as glTF binary. SPEC.md sections "Draco payload" and "glTF". No
+// Draco type leaves this file's source.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,15 @@
 
 namespace talus::protocol {
 
-/// The lattice a chunk's vertices lie on.
+/// The lattice a payload's vertices lie on.
 struct MeshLattice {
-  int cells = 32;       ///< per chunk edge
-  double step_m = 0.0;  ///< voxel_m * 2^lod / kStepsPerCell; a power of two
+  int cells = 32;                 ///< per chunk edge
+  double step_m = 0.0;            ///< voxel_m * 2^lod / kStepsPerCell; a power of two
+  std::size_t triangles_max = 0;  ///< what a decoder takes at most
 };
 MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m);
+/// Of the seam strips of `key`: that of the next finer LOD, from the lowest corner of `key`. Requires key.lod > 0.
+MeshLattice strip_lattice(const ChunkKey& key, int cells, double voxel_m);
 
 /// A Draco mesh: POSITION (float32 x 3, chunk-local metres, explicit quantisation), NORMAL (float32 x 3, octahedral
 /// kNormalBits), GENERIC unique id 2 (material, uint8) and GENERIC unique id 3 (ridge, uint8). Deterministic. kEmpty

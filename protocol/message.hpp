@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/grid/chunk_face.hpp"
 #include "core/grid/chunk_key.hpp"
 #include "core/mesh/chunk_mesh.hpp"
 #include "protocol/interest_area.hpp"
@@ -59,15 +60,24 @@ struct ViewAccepted {
 };
 struct Held {
   std::vector<HeldChunk> chunks;
+  std::vector<std::uint8_t> faces{};  ///< ChunkHead::faces of each of `chunks`; shorter: of the rest it is not known
+  std::vector<StripKey> strips{};
 };
 struct Want {
   std::vector<HeldChunk> chunks;
+  std::vector<StripKey> strips{};
 };
 struct ChunkHead {
   ChunkKey key;
   std::uint64_t revision = 0;
   ChunkKind kind{};
   std::uint32_t payload_bytes = 0;
+  std::uint8_t faces = 0;  ///< that the surface reaches, bits of ChunkFace
+};
+struct StripHead {
+  StripKey strip;
+  std::uint64_t revision = 0;
+  std::uint32_t payload_bytes = 0;  ///< 0: an empty strip
 };
 struct Leave {
   std::vector<ChunkKey> keys;
@@ -91,13 +101,13 @@ struct Bye {
 };
 
 using Message = std::variant<Hello, Welcome, Refused, ViewMessage, ViewAccepted, Held, Want, ChunkHead, Leave, Idle,
-                             Credit, Ping, Pong, Bye>;
+                             Credit, Ping, Pong, Bye, StripHead>;
 std::string_view name_of(const Message& message);
 std::string_view name_of(ByeReason reason);
 std::string_view name_of(RefusedReason reason);
 
-/// Prefix and head; a chunk's payload is sent right behind it, never copied into it. Requires lists within
-/// kKeysPerMessageMax and a payload exactly when the chunk is a mesh.
+/// Prefix and head; a chunk's or strip's payload is sent right behind it, never copied into it. Requires lists within
+/// kKeysPerMessageMax (chunks and strips counted together) and a payload exactly when a chunk is a mesh.
 std::vector<std::byte> encode(const Message& message);
 
 enum class MessageError { kTooShort, kTooLarge, kMalformed, kUnknown, kBadKey };
@@ -105,7 +115,7 @@ std::string_view describe(MessageError error);
 
 struct Decoded {
   Message message;
-  std::span<const std::byte> payload;  ///< into the argument of decode; empty but for a chunk of kind mesh
+  std::span<const std::byte> payload;  ///< into the argument of decode; empty but for a mesh or a strip
 };
 /// Safe on any bytes. Keys are valid, strings and lists bounded; a View is as it came (see `clamped`).
 std::expected<Decoded, MessageError> decode(std::span<const std::byte> bytes);

@@ -58,6 +58,27 @@ class FieldReader {
     return out;
   }
 
+  StripKey strip(const wire::Key& chunk, std::int32_t face) {
+    if (face < 0 || face >= static_cast<std::int32_t>(kChunkFaces)) {
+      fail(MessageError::kBadKey);
+      return {};
+    }
+    return {key(chunk), static_cast<ChunkFace>(face)};
+  }
+
+  std::vector<StripKey> strips(const flatbuffers::Vector<const wire::StripKey*>* from) {
+    std::vector<StripKey> out;
+    if (!bounded(from, kKeysPerMessageMax)) return out;
+    out.reserve(from->size());
+    for (const wire::StripKey* item : *from) out.push_back(strip(item->key(), item->face()));
+    return out;
+  }
+
+  std::vector<std::uint8_t> faces(const flatbuffers::Vector<std::uint8_t>* from, std::size_t size_max) {
+    if (!bounded(from, size_max)) return {};
+    return {from->begin(), from->end()};
+  }
+
   std::vector<std::uint16_t> versions(const flatbuffers::Vector<std::uint16_t>* from) {
     std::vector<std::uint16_t> out;
     if (!bounded(from, kVersionsMax)) return out;
@@ -158,7 +179,20 @@ ChunkHead chunk_of(const wire::Chunk& m, FieldReader& read) {
   out.revision = m.revision();
   out.kind = read.enumerator<ChunkKind>(m.kind());
   out.payload_bytes = m.payload_bytes();
+  out.faces = m.faces();
   if ((out.kind == ChunkKind::kMesh) != (out.payload_bytes != 0)) read.fail(MessageError::kMalformed);
+  return out;
+}
+
+StripHead strip_of(const wire::Strip& m, FieldReader& read) {
+  return {read.strip(*m.key(), m.face()), m.revision(), m.payload_bytes()};
+}
+
+Held held_of(const wire::Held& m, FieldReader& read) {
+  Held out;
+  out.chunks = read.held(m.chunks());
+  out.faces = read.faces(m.faces(), out.chunks.size());
+  out.strips = read.strips(m.strips());
   return out;
 }
 
@@ -175,11 +209,13 @@ std::expected<Message, MessageError> message_of(const wire::Envelope& envelope, 
     case wire::Message::ViewAccepted:
       return view_accepted_of(*envelope.message_as_ViewAccepted());
     case wire::Message::Held:
-      return Held{read.held(envelope.message_as_Held()->chunks())};
+      return held_of(*envelope.message_as_Held(), read);
     case wire::Message::Want:
-      return Want{read.held(envelope.message_as_Want()->chunks())};
+      return Want{read.held(envelope.message_as_Want()->chunks()), read.strips(envelope.message_as_Want()->strips())};
     case wire::Message::Chunk:
       return chunk_of(*envelope.message_as_Chunk(), read);
+    case wire::Message::Strip:
+      return strip_of(*envelope.message_as_Strip(), read);
     case wire::Message::Leave:
       return Leave{read.keys(envelope.message_as_Leave()->keys())};
     case wire::Message::Idle:
@@ -240,7 +276,8 @@ std::expected<Decoded, MessageError> decode(std::span<const std::byte> bytes) {
 
   const std::span<const std::byte> payload = bytes.subspan(kPrefixBytes + head_bytes);
   const auto* chunk = std::get_if<ChunkHead>(&*message);
-  const std::size_t declared = chunk == nullptr ? 0 : chunk->payload_bytes;
+  const auto* strip = std::get_if<StripHead>(&*message);
+  const std::size_t declared = chunk != nullptr ? chunk->payload_bytes : strip != nullptr ? strip->payload_bytes : 0;
   if (payload.size() < declared) return std::unexpected(MessageError::kTooShort);
   if (payload.size() > declared) return std::unexpected(MessageError::kMalformed);
   return Decoded{std::move(*message), payload};

@@ -22,12 +22,19 @@ wire::Vec3 wire_vec(const glm::dvec3& v) {
 
 Offset<flatbuffers::Vector<const wire::HeldKey*>> wire_held(FlatBufferBuilder& builder,
                                                             const std::vector<HeldChunk>& chunks) {
-  TALUS_CHECK(chunks.size() <= kKeysPerMessageMax);
   // By a filler: flatc 2.0.8's uninitialised vectors of structs are not aligned.
   const auto fill = [&](std::size_t i, wire::HeldKey* out) {
     *out = wire::HeldKey(wire_key(chunks[i].key), chunks[i].revision);
   };
   return builder.CreateVectorOfStructs<wire::HeldKey>(chunks.size(), fill);
+}
+
+Offset<flatbuffers::Vector<const wire::StripKey*>> wire_strips(FlatBufferBuilder& builder,
+                                                               const std::vector<StripKey>& strips) {
+  const auto fill = [&](std::size_t i, wire::StripKey* out) {
+    *out = wire::StripKey(wire_key(strips[i].key), static_cast<std::int32_t>(strips[i].face));
+  };
+  return builder.CreateVectorOfStructs<wire::StripKey>(strips.size(), fill);
 }
 
 /// Writes one message of the union and names its type; one overload for each.
@@ -74,18 +81,32 @@ struct UnionWriter {
                                              .Union()};
   }
   Written operator()(const Held& m) const {
-    return {wire::Message::Held, wire::CreateHeld(builder, wire_held(builder, m.chunks)).Union()};
+    TALUS_CHECK(m.chunks.size() + m.strips.size() <= kKeysPerMessageMax && m.faces.size() <= m.chunks.size());
+    const auto chunks = wire_held(builder, m.chunks);
+    const auto faces = m.faces.empty() ? 0 : builder.CreateVector(m.faces);
+    const auto strips = m.strips.empty() ? 0 : wire_strips(builder, m.strips);
+    return {wire::Message::Held, wire::CreateHeld(builder, chunks, faces, strips).Union()};
   }
   Written operator()(const Want& m) const {
-    return {wire::Message::Want, wire::CreateWant(builder, wire_held(builder, m.chunks)).Union()};
+    TALUS_CHECK(m.chunks.size() + m.strips.size() <= kKeysPerMessageMax);
+    const auto chunks = wire_held(builder, m.chunks);
+    const auto strips = m.strips.empty() ? 0 : wire_strips(builder, m.strips);
+    return {wire::Message::Want, wire::CreateWant(builder, chunks, strips).Union()};
   }
   Written operator()(const ChunkHead& m) const {
     TALUS_CHECK((m.kind == ChunkKind::kMesh) == (m.payload_bytes != 0));
     TALUS_CHECK(m.payload_bytes <= kOutboundMessageBytesMax - kChunkHeadBytesMax);
     const wire::Key key = wire_key(m.key);
+    return {wire::Message::Chunk,
+            wire::CreateChunk(builder, &key, m.revision, static_cast<wire::ChunkKind>(m.kind), m.payload_bytes, m.faces)
+                .Union()};
+  }
+  Written operator()(const StripHead& m) const {
+    TALUS_CHECK(m.payload_bytes <= kOutboundMessageBytesMax - kChunkHeadBytesMax);
+    const wire::Key key = wire_key(m.strip.key);
     return {
-        wire::Message::Chunk,
-        wire::CreateChunk(builder, &key, m.revision, static_cast<wire::ChunkKind>(m.kind), m.payload_bytes).Union()};
+        wire::Message::Strip,
+        wire::CreateStrip(builder, &key, static_cast<std::uint8_t>(m.strip.face), m.revision, m.payload_bytes).Union()};
   }
   Written operator()(const Leave& m) const {
     TALUS_CHECK(m.keys.size() <= kKeysPerMessageMax);

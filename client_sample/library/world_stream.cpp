@@ -26,9 +26,10 @@ class WorldStream::Viewer {
     return sequence_;
   }
 
-  void want(std::vector<protocol::HeldChunk> chunks) {
+  void want(std::vector<protocol::HeldChunk> chunks, std::vector<StripKey> strips) {
     chunks.resize(std::min(chunks.size(), protocol::kKeysPerMessageMax));
-    protocol::Want message{std::move(chunks)};
+    strips.resize(std::min(strips.size(), protocol::kKeysPerMessageMax - chunks.size()));
+    protocol::Want message{std::move(chunks), std::move(strips)};
     if (info_) {
       send(message);
     } else {
@@ -78,6 +79,10 @@ class WorldStream::Viewer {
       if (!info_) return fail({ErrorCode::kProtocol, "a chunk came before the welcome"});
       if (handlers_.on_chunk) handlers_.on_chunk({*chunk, decoded->payload, bytes.size()});
       if (!options_.gives_credit_itself) give_credit(bytes.size());
+    } else if (const auto* strip = std::get_if<protocol::StripHead>(&message)) {
+      if (!info_) return fail({ErrorCode::kProtocol, "a strip came before the welcome"});
+      if (handlers_.on_strip) handlers_.on_strip({*strip, decoded->payload, bytes.size()});
+      if (!options_.gives_credit_itself) give_credit(bytes.size());
     } else if (const auto* leave = std::get_if<protocol::Leave>(&message)) {
       if (handlers_.on_leave) handlers_.on_leave(leave->keys);
     } else if (const auto* accepted = std::get_if<protocol::ViewAccepted>(&message)) {
@@ -104,14 +109,25 @@ class WorldStream::Viewer {
     }
     info_ = parse_world_info(welcome.manifest_json);
     if (!info_) return fail({ErrorCode::kProtocol, "the manifest of the welcome cannot be read"});
-    for (std::size_t at = 0; at < options_.held.size(); at += protocol::kKeysPerMessageMax) {
-      const auto first = options_.held.begin() + static_cast<std::ptrdiff_t>(at);
-      const std::size_t count = std::min(protocol::kKeysPerMessageMax, options_.held.size() - at);
-      send(protocol::Held{{first, first + static_cast<std::ptrdiff_t>(count)}});
-    }
+    say_what_is_held();
     if (waiting_view_) send(*std::exchange(waiting_view_, std::nullopt));
     if (waiting_want_) send(*std::exchange(waiting_want_, std::nullopt));
     if (handlers_.on_welcome) handlers_.on_welcome(*info_);
+  }
+
+  void say_what_is_held() {
+    const auto part = [](const auto& all, std::size_t at) {
+      const std::size_t first = std::min(at, all.size());
+      const std::size_t last = std::min(at + protocol::kKeysPerMessageMax, all.size());
+      return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                         all.begin() + static_cast<std::ptrdiff_t>(last));
+    };
+    for (std::size_t at = 0; at < options_.held.size(); at += protocol::kKeysPerMessageMax) {
+      send(protocol::Held{part(options_.held, at), part(options_.held_faces, at), {}});
+    }
+    for (std::size_t at = 0; at < options_.held_strips.size(); at += protocol::kKeysPerMessageMax) {
+      send(protocol::Held{{}, {}, part(options_.held_strips, at)});
+    }
   }
 
   /// Ends the session for a reason of the protocol; the reason is what on_closed says.
@@ -142,8 +158,8 @@ WorldStream::~WorldStream() = default;
 std::uint32_t WorldStream::look(const protocol::View& view) {
   return viewer_->look(view);
 }
-void WorldStream::want(std::vector<protocol::HeldChunk> chunks) {
-  viewer_->want(std::move(chunks));
+void WorldStream::want(std::vector<protocol::HeldChunk> chunks, std::vector<StripKey> strips) {
+  viewer_->want(std::move(chunks), std::move(strips));
 }
 void WorldStream::give_credit(std::uint64_t bytes) {
   viewer_->give_credit(bytes);

@@ -32,6 +32,8 @@ struct StreamOptions {
   std::uint64_t credit_bytes = 4ULL * 1024 * 1024;  ///< bytes under way at most: more hides latency, less lag
   bool gives_credit_itself = false;                 ///< credit returns only through give_credit
   std::vector<protocol::HeldChunk> held;            ///< sent right behind the hello
+  std::vector<std::uint8_t> held_faces;             ///< head.faces of each of `held`
+  std::vector<StripKey> held_strips;
 };
 
 struct ArrivedChunk {
@@ -41,10 +43,19 @@ struct ArrivedChunk {
   std::uint64_t message_bytes = 0;  ///< what it cost of the credit
 };
 
+/// What closes a chunk to a finer one across one of its faces. Draw it while the chunk and a finer neighbour there are
+/// drawn; forget it with its chunk.
+struct ArrivedStrip {
+  protocol::StripHead head;
+  std::span<const std::byte> payload;  ///< Draco on protocol::strip_lattice; empty for a strip without triangles
+  std::uint64_t message_bytes = 0;
+};
+
 struct StreamHandlers {
   std::function<void(const WorldInfo&)> on_welcome;
   std::function<void(const protocol::ViewAccepted&)> on_view;
   std::function<void(const ArrivedChunk&)> on_chunk;
+  std::function<void(const ArrivedStrip&)> on_strip;  ///< none from a server of version 1
   std::function<void(const std::vector<ChunkKey>&)> on_leave;
   std::function<void(const protocol::Idle&)> on_idle;
   std::function<void(const ClientError&)> on_closed;  ///< once, and nothing after it
@@ -59,8 +70,9 @@ class WorldStream {
 
   /// The latest wins; returns its number, which ViewAccepted and Idle echo. Before the welcome it waits.
   std::uint32_t look(const protocol::View& view);
-  /// Explicit keys, nearest first, instead of an interest area; the latest wins.
-  void want(std::vector<protocol::HeldChunk> chunks);
+  /// Explicit keys, nearest first, instead of an interest area or besides it; the latest wins. The strips between them
+  /// come by themselves; `strips` names others, for chunks that are still drawn and no longer wanted.
+  void want(std::vector<protocol::HeldChunk> chunks, std::vector<StripKey> strips = {});
   /// Bytes of messages that have been consumed; only with gives_credit_itself.
   void give_credit(std::uint64_t bytes);
   /// Says bye.

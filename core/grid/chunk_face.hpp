@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -52,6 +53,14 @@ constexpr std::array<ChunkKey, 4> finer_across(const ChunkKey& key, ChunkFace fa
   }
   return out;
 }
+
+/// One face of one chunk: what a seam strip belongs to. Valid when the key is.
+struct StripKey {
+  ChunkKey key;
+  ChunkFace face = ChunkFace::kPx;
+
+  friend constexpr auto operator<=>(const StripKey&, const StripKey&) = default;
+};
 
 /// The face of that name: px nx py ny pz nz.
 constexpr std::optional<ChunkFace> face_named(std::string_view name) {

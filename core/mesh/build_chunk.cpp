@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/check.hpp"
+#include "core/grid/chunk_face.hpp"
 #include "core/mesh/vertex_maker.hpp"
 
 namespace talus {
@@ -48,6 +49,19 @@ class VertexWriter {
 };
 
 }  // namespace
+
+unsigned faces_reached(const ChunkMesh& mesh, int cells) {
+  const int edge = cells * kStepsPerCell;
+  unsigned out = 0;
+  for (const glm::u16vec3& position : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const unsigned high = bit_of(static_cast<ChunkFace>(2 * axis));
+      if (position[axis] == edge) out |= high;
+      if (position[axis] == 0) out |= high << 1;
+    }
+  }
+  return out;
+}
 
 ColumnGrid chunk_columns(const WorldFunction& world, const ChunkKey& key) {
   const glm::i64vec3 corner = corner_voxel(key, world.cells());

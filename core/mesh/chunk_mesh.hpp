@@ -40,4 +40,8 @@ struct ChunkMesh {
   std::size_t triangles() const { return indices.size() / 3; }
 };
 
+/// Faces of the chunk that its surface reaches, as bits of ChunkFace. Where no finer chunk across a face reaches it,
+/// the coarser one does not either, and there is no strip.
+unsigned faces_reached(const ChunkMesh& mesh, int cells);
+
 }  // namespace talus

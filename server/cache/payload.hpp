@@ -10,25 +10,28 @@
 #include <glm/vec3.hpp>
 
 #include "core/base/hash.hpp"
+#include "core/grid/chunk_face.hpp"
 #include "core/grid/chunk_key.hpp"
 #include "core/mesh/chunk_mesh.hpp"
 
 namespace talus::server {
 
 /// kHeight is of a whole column of chunks; kMap is a picture of a map tile: key.lod is its zoom, key.x and key.z are
-/// its x and y. The others are of one chunk.
-enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap };
-inline constexpr std::size_t kPayloadFormats = 5;
+/// its x and y; kStrip is of one face of a chunk. The others are of one chunk.
+enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap, kStrip };
+inline constexpr std::size_t kPayloadFormats = 6;
 
 /// Whether a payload's name has an origin its positions are counted from.
 constexpr bool has_origin(PayloadFormat format) {
   return format == PayloadFormat::kGlb;
 }
 
-/// Encoded bytes of one chunk, column or map tile. Without bytes when the chunk is all air or all rock.
+/// Encoded bytes of one chunk, column, map tile or strip. Without bytes when the chunk is all air or all rock, or the
+/// strip is empty (which is of kind air).
 struct ChunkPayload {
   ChunkKind kind = ChunkKind::kAir;
   std::vector<std::byte> bytes;
+  std::uint8_t faces = 0;  ///< that a chunk's surface reaches, bits of ChunkFace
 };
 using PayloadRef = std::shared_ptr<const ChunkPayload>;
 
@@ -36,15 +39,17 @@ using PayloadRef = std::shared_ptr<const ChunkPayload>;
 struct PayloadName {
   std::uint32_t world = 0;  ///< index of the world in this server
   PayloadFormat format = PayloadFormat::kDraco;
-  ChunkKey key;         ///< of a column: y is 0
-  glm::dvec3 origin{};  ///< metres; zero where has_origin is false
+  ChunkKey key;                     ///< of a column: y is 0
+  ChunkFace face = ChunkFace::kPx;  ///< of a strip; kPx for other formats
+  glm::dvec3 origin{};              ///< metres; zero where has_origin is false
   friend bool operator==(const PayloadName&, const PayloadName&) = default;
 };
 
 struct PayloadNameHash {
   std::size_t operator()(const PayloadName& name) const noexcept {
-    std::uint64_t h =
-        mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 8) | static_cast<std::uint8_t>(name.format));
+    std::uint64_t h = mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 16) |
+                                                          (std::uint64_t{static_cast<std::uint8_t>(name.face)} << 8) |
+                                                          static_cast<std::uint8_t>(name.format));
     if (has_origin(name.format)) {
       // + 0.0 makes one of the two zeros, which are equal.
       for (const double c : {name.origin.x, name.origin.y, name.origin.z})

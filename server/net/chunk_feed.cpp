@@ -24,13 +24,13 @@ constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 }  // namespace
 
 ChunkFeed::ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes,
-                     asio::io_context::executor_type executor, std::weak_ptr<void> owner)
+                     bool takes_strips, asio::io_context::executor_type executor, std::weak_ptr<void> owner)
     : net_(net),
       writer_(writer),
       world_(world),
       executor_(std::move(executor)),
       owner_(std::move(owner)),
-      viewer_(net.worlds[world]->shape(), credit_bytes) {
+      viewer_(net.worlds[world]->shape(), credit_bytes, takes_strips) {
   net_.sessions.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -53,12 +53,13 @@ void ChunkFeed::close() {
 void ChunkFeed::refresh() {
   const Instant start = net_.clock.now();
   const Viewer::Change change = viewer_.refresh();
-  for (const ChunkKey& key : change.cancelled) {
-    tickets_.erase(key);
-    std::erase_if(ready_, [&](const auto& ready) { return ready.first == key; });
+  for (const Piece& piece : change.cancelled) {
+    tickets_.erase(piece);
+    std::erase_if(ready_, [&](const Ready& ready) { return ready.piece == piece; });
   }
-  for (const WantedChunk& chunk : change.moved) {
-    if (const auto found = tickets_.find(chunk.key); found != tickets_.end()) found->second.set_urgency(chunk.urgency);
+  for (const WantedPiece& moved : change.moved) {
+    const auto found = tickets_.find(moved.piece);
+    if (found != tickets_.end()) found->second.set_urgency(moved.urgency);
   }
   if (change.accepted) writer_.send_control(*change.accepted);
   // Behind the chunks that are queued already: a chunk must not come after its own leave.
@@ -81,8 +82,8 @@ std::size_t ChunkFeed::window() const {
 void ChunkFeed::pump() {
   if (is_closed_) return;
   while (!ready_.empty()) {
-    auto& [key, frame] = ready_.front();
-    if (viewer_.deliver(key, frame.message_bytes()) == Viewer::Delivery::kNoCredit) break;
+    auto& [piece, frame, faces] = ready_.front();
+    if (viewer_.deliver(piece, frame.message_bytes(), faces) == Viewer::Delivery::kNoCredit) break;
     writer_.send_chunk(std::move(frame));
     ready_.erase(ready_.begin());
   }
@@ -97,50 +98,58 @@ void ChunkFeed::pump() {
 bool ChunkFeed::request_next() {
   const auto next = viewer_.next_request();
   if (!next) return false;
-  ChunkService::Done done = [this, owner = owner_.lock(), key = next->key](ChunkResult result) mutable {
-    asio::post(executor_, [this, owner = std::move(owner), key, result = std::move(result)] { on_chunk(key, result); });
+  const Piece piece = next->piece;
+  ChunkService::Done done = [this, owner = owner_.lock(), piece](ChunkResult result) mutable {
+    asio::post(executor_,
+               [this, owner = std::move(owner), piece, result = std::move(result)] { on_piece(piece, result); });
   };
   PayloadName name;
   name.world = static_cast<std::uint32_t>(world_);
-  name.key = next->key;
+  name.key = piece.key;
+  if (piece.face) {
+    name.format = PayloadFormat::kStrip;
+    name.face = *piece.face;
+  }
   ChunkService::Answer answer = net_.chunks.request(name, Lane::kStream, next->urgency, std::move(done));
   if (auto* payload = std::get_if<PayloadRef>(&answer)) {
-    offer(next->key, std::move(*payload));
+    offer(piece, std::move(*payload));
   } else if (auto* ticket = std::get_if<ChunkService::Ticket>(&answer)) {
-    tickets_[next->key] = std::move(*ticket);
+    tickets_[piece] = std::move(*ticket);
   } else {
-    viewer_.put_back(next->key);
+    viewer_.put_back(piece);
     retry_at_ = net_.clock.now() + seconds(kRetryS);
     return false;
   }
   return true;
 }
 
-void ChunkFeed::on_chunk(const ChunkKey& key, const ChunkResult& result) {
-  if (is_closed_ || tickets_.erase(key) == 0) return;
+void ChunkFeed::on_piece(const Piece& piece, const ChunkResult& result) {
+  if (is_closed_ || tickets_.erase(piece) == 0) return;
   if (result) {
-    offer(key, *result);
+    offer(piece, *result);
   } else {
     // It would fail again: the place stays as it is at the client, and the view can still become complete.
-    viewer_.deliver(key, 0);
+    viewer_.deliver(piece, 0);
   }
   pump();
 }
 
-void ChunkFeed::offer(const ChunkKey& key, PayloadRef payload) {
+void ChunkFeed::offer(const Piece& piece, PayloadRef payload) {
   if (writer_.bytes() > net_.limits.send_soft_bytes) {
     net_.metrics.add(Count::kSendShed);
-    return viewer_.put_back(key);
+    return viewer_.put_back(piece);
   }
-  OutFrame frame = writer_.chunk_frame(key, std::move(payload));
-  switch (viewer_.deliver(key, frame.message_bytes())) {
+  const unsigned faces = payload->faces;
+  OutFrame frame = piece.face ? writer_.strip_frame({piece.key, *piece.face}, std::move(payload))
+                              : writer_.chunk_frame(piece.key, std::move(payload));
+  switch (viewer_.deliver(piece, frame.message_bytes(), faces)) {
     case Viewer::Delivery::kSend:
       return writer_.send_chunk(std::move(frame));
     case Viewer::Delivery::kUnwanted:
       return;
     case Viewer::Delivery::kNoCredit:
       if (ready_.empty()) net_.metrics.add(Count::kCreditWaits);
-      ready_.emplace_back(key, std::move(frame));
+      ready_.push_back({piece, std::move(frame), faces});
       return;
   }
 }

@@ -17,7 +17,7 @@ class ChunkFeed {
  public:
   /// `net` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way. Counts as a
   /// session from here to its destruction.
-  ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes,
+  ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes, bool takes_strips,
             asio::io_context::executor_type executor, std::weak_ptr<void> owner);
   ~ChunkFeed();
   ChunkFeed(const ChunkFeed&) = delete;
@@ -35,8 +35,8 @@ class ChunkFeed {
   void refresh();
   void pump();
   bool request_next();
-  void on_chunk(const ChunkKey& key, const ChunkResult& result);
-  void offer(const ChunkKey& key, PayloadRef payload);
+  void on_piece(const Piece& piece, const ChunkResult& result);
+  void offer(const Piece& piece, PayloadRef payload);
   std::size_t window() const;
 
   NetContext& net_;
@@ -45,8 +45,15 @@ class ChunkFeed {
   const asio::io_context::executor_type executor_;
   const std::weak_ptr<void> owner_;
   Viewer viewer_;
-  std::unordered_map<ChunkKey, ChunkService::Ticket, ChunkKeyHash> tickets_;
-  std::vector<std::pair<ChunkKey, OutFrame>> ready_;  ///< made, and waiting for credit
+  /// Made, and waiting for credit.
+  struct Ready {
+    Piece piece;
+    OutFrame frame;
+    unsigned faces = 0;
+  };
+
+  std::unordered_map<Piece, ChunkService::Ticket, PieceHash> tickets_;
+  std::vector<Ready> ready_;
   Instant retry_at_{};
   Instant refresh_at_{};
   bool is_closed_ = false;

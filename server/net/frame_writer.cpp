@@ -17,10 +17,20 @@ FrameWriter::FrameWriter(NetContext& net, Socket& socket, const Framing& framing
 
 OutFrame FrameWriter::chunk_frame(const ChunkKey& key, PayloadRef payload) const {
   const auto bytes = static_cast<std::uint32_t>(payload->bytes.size());
+  const protocol::ChunkHead head{key, 0, payload->kind, bytes, payload->faces};
+  return payload_frame(head, std::move(payload));
+}
+
+OutFrame FrameWriter::strip_frame(const StripKey& strip, PayloadRef payload) const {
+  const auto bytes = static_cast<std::uint32_t>(payload->bytes.size());
+  return payload_frame(protocol::StripHead{strip, 0, bytes}, std::move(payload));
+}
+
+OutFrame FrameWriter::payload_frame(const protocol::Message& head, PayloadRef payload) const {
   OutFrame frame;
-  frame.message = protocol::encode(protocol::ChunkHead{key, 0, payload->kind, bytes});
-  frame.head = framing_.message_head(frame.message.size() + bytes);
-  if (bytes != 0) frame.payload = std::move(payload);
+  frame.message = protocol::encode(head);
+  frame.head = framing_.message_head(frame.message.size() + payload->bytes.size());
+  if (!payload->bytes.empty()) frame.payload = std::move(payload);
   return frame;
 }
 

@@ -20,8 +20,9 @@ class FrameWriter {
 
   void send_control(const protocol::Message& message);
   void send_bulk(const protocol::Message& message);
-  /// The frame of a chunk, to be sent when its client can take it.
+  /// The frame of a chunk or a strip, to be sent when its client can take it.
   OutFrame chunk_frame(const ChunkKey& key, PayloadRef payload) const;
+  OutFrame strip_frame(const StripKey& strip, PayloadRef payload) const;
   void send_chunk(OutFrame frame);
   /// A frame of the framing's own, head and all; nothing when it is empty.
   void push_control(std::vector<std::byte> frame);
@@ -41,6 +42,7 @@ class FrameWriter {
 
  private:
   OutFrame frame_of(const protocol::Message& message) const;
+  OutFrame payload_frame(const protocol::Message& head, PayloadRef payload) const;
 
   NetContext& net_;
   Socket& socket_;

@@ -35,7 +35,8 @@ HttpAnswer json_answer(std::string body);
 /// `{"error": code, "message": message}`; `fields` must outlive the answer.
 HttpAnswer error_answer(int status, std::string_view code, std::string_view message, std::string_view fields = {});
 
-/// 200 with the payload (a map tile always is one), or 204 and what fills the chunk; for ever cacheable. `etag` must
+/// 200 with the payload (a map tile always is one), or 204 and what fills the chunk (nothing for an empty strip); for
+/// ever cacheable. `etag` must
 /// outlive the answer.
 HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format);
 /// The place as JSON, or 404.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/grid/chunk_face.hpp"
 #include "core/grid/chunk_key.hpp"
 #include "server/net/url_text.hpp"
 
@@ -99,6 +100,23 @@ Route chunk_route(const HttpRequest& request, const RouteContext& context, std::
   if (has_origin(name.format)) {
     if (auto refused = read_origin(request.query, name.origin)) return std::move(*refused);
   }
+  return payload_route(request, context, name);
+}
+
+Route seam_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
+  constexpr std::string_view kSuffix = ".drc";
+  if (parts.size() != 5) return bad_request("bad_seam", "seam: expected seams/{lod}/{x}/{y}/{z}/{face}.drc");
+  if (!parts[4].ends_with(kSuffix)) return bad_request("bad_format", "format: a seam strip ends in .drc");
+  PayloadName name;
+  name.world = static_cast<std::uint32_t>(world);
+  name.format = PayloadFormat::kStrip;
+  if (auto refused = read_coordinate("lod", parts[0], name.key.lod)) return std::move(*refused);
+  if (auto refused = read_coordinate("x", parts[1], name.key.x)) return std::move(*refused);
+  if (auto refused = read_coordinate("y", parts[2], name.key.y)) return std::move(*refused);
+  if (auto refused = read_coordinate("z", parts[3], name.key.z)) return std::move(*refused);
+  const auto face = face_named(parts[4].substr(0, parts[4].size() - kSuffix.size()));
+  if (!face) return bad_request("bad_face", "face: expected one of px nx py ny pz nz");
+  name.face = *face;
   return payload_route(request, context, name);
 }
 

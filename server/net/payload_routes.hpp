@@ -1,4 +1,4 @@
-// Routes of payloads: chunks and columns by key and format. Pure.
+// Routes of payloads: chunks, columns and strips by key and format. Pure.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +20,8 @@ AnswerRoute not_found(std::string_view code, std::string_view message);
 Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name);
 /// `parts` are what follows `chunks/`: lod, x, y, z, where the last also carries the format.
 Route chunk_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
+/// `parts` are what follows `seams/`: lod, x, y, z, face.drc.
+Route seam_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
 /// `parts` are what follows `columns/`: lod, x, z.height.
 Route column_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
 

@@ -155,6 +155,7 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
     return cacheable_json(request, found.manifest_json(), found.manifest_etag());
   }
   if (parts[1] == "chunks") return chunk_route(request, context, world, parts.subspan(2));
+  if (parts[1] == "seams") return seam_route(request, context, world, parts.subspan(2));
   if (parts[1] == "columns") return column_route(request, context, world, parts.subspan(2));
   if (parts[1] == "map") return map_route(request, context, world, parts.subspan(2));
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);

@@ -214,14 +214,15 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
 
   const World& world = *net_.worlds[named];
   world_ = named;
-  feed_.emplace(net_, writer_, named, hello.credit_bytes, executor_, weak_from_this());
+  const std::uint16_t version = std::min(hello.version_high, protocol::kVersionHigh);
+  const bool takes_strips = version >= protocol::kVersionOfStrips;
+  feed_.emplace(net_, writer_, named, hello.credit_bytes, takes_strips, executor_, weak_from_this());
   phase_ = Phase::kOpen;
   const std::uint64_t number = net_.session_numbers.fetch_add(1, std::memory_order_relaxed);
   net_.metrics.add(Count::kSessionsOpened);
   id_ = fmt::format("{:016x}", mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
   log(LogLevel::kInfo, "session opened", {{"session", id_}, {"world", world.name()}, {"client", hello.client}});
-  writer_.send_control(protocol::Welcome{std::min(hello.version_high, protocol::kVersionHigh), id_, world.hash(), "drc",
-                                         world.manifest_json()});
+  writer_.send_control(protocol::Welcome{version, id_, world.hash(), "drc", world.manifest_json()});
 }
 
 void StreamSession::refuse(RefusedReason reason, std::string_view message) {

@@ -21,13 +21,13 @@ constexpr std::size_t kColumnBlocks = 256;
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
     : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
 
-void TerrainBuilder::load_columns(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
-  ColumnBlock& columns = scratch.build.columns;
-  const ColumnName key{name.world, name.key.lod, name.key.x, name.key.z};
-  if (columns_.load(key, columns)) return;
-  world.columns(chunk_columns(world, name.key), columns);
-  columns_.store(key, columns);
-  footprints_.store({name.world, name.key.lod, name.key.x, name.key.z}, {columns.height_low_m, columns.height_high_m});
+void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, ColumnBlock& out) {
+  const ColumnName name{world, key.lod, key.x, key.z};
+  if (columns_.load(name, out)) return;
+  const WorldFunction& function = worlds_[world]->function();
+  function.columns(chunk_columns(function, key), out);
+  columns_.store(name, out);
+  footprints_.store({world, key.lod, key.x, key.z}, {out.height_low_m, out.height_high_m});
 }
 
 /// What core's build_chunk does, with heights remembered for long and columns for a while.
@@ -40,16 +40,26 @@ ChunkKind TerrainBuilder::load_if_crossed(const PayloadName& name, const WorldFu
   if (const auto known = footprints_.load({name.world, name.key.lod, name.key.x, name.key.z})) {
     if (const ChunkKind kind = kind_within(known->low_m, known->high_m); kind != ChunkKind::kMesh) return kind;
   }
-  load_columns(name, world, scratch);
+  load_columns(name.world, name.key, scratch.build.columns);
   return kind_within(scratch.build.columns.height_low_m, scratch.build.columns.height_high_m);
+}
+
+/// A chunk of the finest LOD has no finer neighbour, and its strips are empty.
+ChunkKind TerrainBuilder::sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  scratch.mesh.clear();
+  if (name.key.lod == 0) return ChunkKind::kAir;
+  const ColumnLoader columns = [&](const ChunkKey& key, ColumnBlock& out) { load_columns(name.world, key, out); };
+  build_strip(world, name.key, name.face, columns, scratch.strip, scratch.mesh);
+  return scratch.mesh.indices.empty() ? ChunkKind::kAir : ChunkKind::kMesh;
 }
 
 ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
   if (name.format == PayloadFormat::kHeight) {
-    load_columns(name, world, scratch);
+    load_columns(name.world, name.key, scratch.build.columns);
     sample_height_tile(world, scratch.build.columns, scratch.height);
     return ChunkKind::kMesh;
   }
+  if (name.format == PayloadFormat::kStrip) return sample_strip(name, world, scratch);
   if (const ChunkKind kind = load_if_crossed(name, world, scratch); kind != ChunkKind::kMesh) return kind;
   if (name.format == PayloadFormat::kDensity) {
     return sample_density_tile(world, name.key, scratch.build, scratch.density);
@@ -70,6 +80,8 @@ TerrainBuilder::Bytes TerrainBuilder::encode(const PayloadName& name, const Worl
       return protocol::encode_density(scratch.density, name.key);
     case PayloadFormat::kHeight:
       return protocol::encode_height(scratch.height, name.key);
+    case PayloadFormat::kStrip:
+      return protocol::encode_draco(scratch.mesh, protocol::strip_lattice(name.key, world.cells(), world.voxel_m()));
     case PayloadFormat::kMap:
       break;
   }
@@ -101,7 +113,7 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   const Instant built = clock_.now();
   metrics_.record(Hop::kBuildChunk, built - start);
 
-  if (kind != ChunkKind::kMesh) return ChunkPayload{kind, {}};
+  if (kind != ChunkKind::kMesh) return ChunkPayload{kind, {}, 0};
   if (token.is_cancelled()) return std::nullopt;
 
   Bytes bytes = encode(name, world, scratch);
@@ -109,7 +121,8 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   if (!bytes) throw std::runtime_error("encode_chunk: " + std::string(protocol::describe(bytes.error())));
   // The payload stays for long: what the encoder reserved beyond it is given back.
   bytes->shrink_to_fit();
-  return ChunkPayload{kind, std::move(*bytes)};
+  const unsigned faces = name.format == PayloadFormat::kDraco ? faces_reached(scratch.mesh, world.cells()) : 0;
+  return ChunkPayload{kind, std::move(*bytes), static_cast<std::uint8_t>(faces)};
 }
 
 }  // namespace talus::server

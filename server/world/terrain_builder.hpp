@@ -8,6 +8,7 @@
 #include "core/mesh/build_chunk.hpp"
 #include "core/mesh/density_tile.hpp"
 #include "core/mesh/height_tile.hpp"
+#include "core/mesh/seam_strip.hpp"
 #include "protocol/codec_error.hpp"
 #include "server/cache/column_memo.hpp"
 #include "server/observe/metrics.hpp"
@@ -29,6 +30,7 @@ class TerrainBuilder final : public ChunkBuilder {
   /// Working memory of one pool thread: after its first surface chunk only the payload itself is allocated.
   struct alignas(64) Scratch {
     ChunkScratch build;
+    StripScratch strip;
     ChunkMesh mesh;
     HeightTile height;
     DensityTile density;
@@ -39,10 +41,11 @@ class TerrainBuilder final : public ChunkBuilder {
   ChunkPayload build_map(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   using Bytes = std::expected<std::vector<std::byte>, protocol::CodecError>;
 
-  /// Columns under the chunk into `scratch`, remembered or evaluated.
-  void load_columns(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  /// Columns under a chunk, remembered or evaluated.
+  void load_columns(std::uint32_t world, const ChunkKey& key, ColumnBlock& out);
   /// Air, rock, or kMesh with the chunk's columns in `scratch`.
   ChunkKind load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  ChunkKind sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   Bytes encode(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
 

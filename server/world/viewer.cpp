@@ -14,18 +14,24 @@ double want_urgency(std::size_t i) {
   return static_cast<double>(i) / 64.0;
 }
 
+/// A strip is small, and what it closes is there already: ahead of chunks as near.
+constexpr double kStripUrgency = 0.5;
+
 /// Nothing a client says it holds is remembered beyond this.
 constexpr std::size_t kHeldKeysMax = 2 * protocol::kWantedKeysMax;
 
-/// Order of the heap. Equal urgencies are ordered by key, so that equal views give equal streams.
-bool is_less_urgent(const WantedChunk& a, const WantedChunk& b) {
-  return a.urgency != b.urgency ? a.urgency > b.urgency : a.key > b.key;
+/// What is not known of a held chunk's faces: any may be reached.
+constexpr std::uint8_t kAllFaces = (1U << kChunkFaces) - 1;
+
+/// Order of the heap. Equal urgencies are ordered by piece, so that equal views give equal streams.
+bool is_less_urgent(const WantedPiece& a, const WantedPiece& b) {
+  return a.urgency != b.urgency ? a.urgency > b.urgency : a.piece > b.piece;
 }
 
 }  // namespace
 
-Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes)
-    : shape_(shape), credit_bytes_(credit_bytes) {}
+Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips)
+    : shape_(shape), takes_strips_(takes_strips), credit_bytes_(credit_bytes) {}
 
 bool Viewer::on_message(const protocol::Message& message) {
   if (const auto* view = std::get_if<protocol::ViewMessage>(&message)) {
@@ -33,13 +39,14 @@ bool Viewer::on_message(const protocol::Message& message) {
     is_view_new_ = true;
     is_stale_ = true;
   } else if (const auto* held = std::get_if<protocol::Held>(&message)) {
-    hold(held->chunks);
+    hold(*held);
     // A resuming client says what it holds before it says what it sees: measured against no view at all, everything
     // would be left and then sent again.
     is_stale_ = is_stale_ || view_.has_value() || !want_.empty();
   } else if (const auto* want = std::get_if<protocol::Want>(&message)) {
     want_.clear();
     for (const protocol::HeldChunk& chunk : want->chunks) want_.push_back(chunk.key);
+    want_strips_ = want->strips;
     is_stale_ = true;
   } else if (const auto* credit = std::get_if<protocol::Credit>(&message)) {
     // A sum no client can use up; saturates instead of wrapping.
@@ -51,37 +58,55 @@ bool Viewer::on_message(const protocol::Message& message) {
   return true;
 }
 
-/// Keeps, of each key, the most urgent state; all of one key are in one phase.
+/// Keeps, of each piece, the most urgent state; all of one piece are in one phase.
 void Viewer::sort_unique(States& states) {
-  std::sort(states.begin(), states.end(),
-            [](const State& a, const State& b) { return a.key != b.key ? a.key < b.key : a.urgency < b.urgency; });
+  std::sort(states.begin(), states.end(), [](const State& a, const State& b) {
+    return a.piece != b.piece ? a.piece < b.piece : a.urgency < b.urgency;
+  });
   const auto end =
-      std::unique(states.begin(), states.end(), [](const State& a, const State& b) { return a.key == b.key; });
+      std::unique(states.begin(), states.end(), [](const State& a, const State& b) { return a.piece == b.piece; });
   states.erase(end, states.end());
 }
 
-Viewer::State* Viewer::find(const ChunkKey& key) {
-  const auto at = std::lower_bound(states_.begin(), states_.end(), key,
-                                   [](const State& state, const ChunkKey& k) { return state.key < k; });
-  return at == states_.end() || at->key != key ? nullptr : &*at;
+Viewer::State* Viewer::find_in(States& states, const Piece& piece) {
+  const auto at = std::lower_bound(states.begin(), states.end(), piece,
+                                   [](const State& state, const Piece& p) { return state.piece < p; });
+  return at == states.end() || at->piece != piece ? nullptr : &*at;
 }
 
-void Viewer::hold(const std::vector<protocol::HeldChunk>& chunks) {
+void Viewer::hold(const protocol::Held& held) {
   States fresh;
-  for (const protocol::HeldChunk& chunk : chunks) {
+  for (std::size_t i = 0; i < held.chunks.size(); ++i) {
+    const protocol::HeldChunk& chunk = held.chunks[i];
     // Without edits there is one revision; what a client holds of any other is not what the world is now.
     if (chunk.revision != 0) continue;
-    if (State* known = find(chunk.key)) {
+    const std::uint8_t faces = i < held.faces.size() ? held.faces[i] : kAllFaces;
+    if (State* known = find({chunk.key, {}})) {
       // In flight already: it comes once more, which costs bytes but never a hole.
       if (known->phase != Phase::kWanted) continue;
       known->phase = Phase::kHeld;
+      known->faces = faces;
       --wanted_;
-    } else if (states_.size() + fresh.size() < kHeldKeysMax) {
-      fresh.push_back({chunk.key, 0.0, Phase::kHeld});
+    } else if (chunks_.size() + fresh.size() < kHeldKeysMax) {
+      fresh.push_back({{chunk.key, {}}, 0.0, Phase::kHeld, faces});
     }
   }
-  states_.insert(states_.end(), fresh.begin(), fresh.end());
-  sort_unique(states_);
+  chunks_.insert(chunks_.end(), fresh.begin(), fresh.end());
+  sort_unique(chunks_);
+
+  fresh.clear();
+  for (const StripKey& strip : held.strips) {
+    const Piece piece{strip.key, strip.face};
+    if (State* known = find(piece)) {
+      if (known->phase != Phase::kWanted) continue;
+      known->phase = Phase::kHeld;
+      --wanted_;
+    } else if (strips_.size() + fresh.size() < kHeldKeysMax) {
+      fresh.push_back({piece, 0.0, Phase::kHeld, 0});
+    }
+  }
+  strips_.insert(strips_.end(), fresh.begin(), fresh.end());
+  sort_unique(strips_);
 }
 
 Viewer::States Viewer::target() const {
@@ -91,10 +116,10 @@ Viewer::States Viewer::target() const {
     protocol::interest_area(view_->view, shape_, area);
     out.reserve(area.size() + want_.size());
     for (const ChunkKey& key : area) {
-      out.push_back({key, protocol::chunk_urgency(view_->view, shape_, key), Phase::kWanted});
+      out.push_back({{key, {}}, protocol::chunk_urgency(view_->view, shape_, key), Phase::kWanted, 0});
     }
   }
-  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({want_[i], want_urgency(i), Phase::kWanted});
+  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({{want_[i], {}}, want_urgency(i), Phase::kWanted, 0});
   sort_unique(out);
   return out;
 }
@@ -102,32 +127,85 @@ Viewer::States Viewer::target() const {
 /// Both are sorted: one walk finds what stays, what comes and what goes.
 void Viewer::merge_into(States& next, Change& change) const {
   auto at = next.begin();
-  for (const State& old : states_) {
-    while (at != next.end() && at->key < old.key) ++at;
-    if (at != next.end() && at->key == old.key) {
+  for (const State& old : chunks_) {
+    while (at != next.end() && at->piece < old.piece) ++at;
+    if (at != next.end() && at->piece == old.piece) {
       at->phase = old.phase;
-      if (old.phase == Phase::kInFlight) change.moved.push_back({old.key, at->urgency});
+      at->faces = old.faces;
+      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, at->urgency});
     } else if (old.phase == Phase::kHeld) {
-      change.leave.push_back(old.key);
+      change.leave.push_back(old.piece.key);
     } else if (old.phase == Phase::kInFlight) {
-      change.cancelled.push_back(old.key);
+      change.cancelled.push_back(old.piece);
     }
   }
+}
+
+/// Visits the strips that close a held chunk to the coarser chunks of the target around it.
+template <class Visit>
+void Viewer::for_each_strip_of(const State& finer, Visit visit) {
+  if (finer.phase != Phase::kHeld || finer.faces == 0 || finer.piece.key.lod >= kLodMax) return;
+  const ChunkKey parent = parent_of(finer.piece.key);
+  for (const ChunkFace face : kAllChunkFaces) {
+    if ((finer.faces & bit_of(face)) == 0) continue;
+    const ChunkKey across = parent_of(neighbour_of(finer.piece.key, face));
+    if (across == parent) continue;
+    if (const State* coarser = find({across, {}})) visit(Piece{across, opposite(face)}, coarser->urgency);
+  }
+}
+
+/// Every strip that the target needs, as far as it is known.
+Viewer::States Viewer::strips_of_target() {
+  States out;
+  for (std::size_t i = 0; i < want_strips_.size(); ++i) {
+    out.push_back({{want_strips_[i].key, want_strips_[i].face}, want_urgency(i), Phase::kWanted, 0});
+  }
+  for (const State& chunk : chunks_) {
+    for_each_strip_of(chunk, [&](const Piece& strip, double urgency) {
+      out.push_back({strip, kStripUrgency * urgency, Phase::kWanted, 0});
+    });
+  }
+  sort_unique(out);
+  return out;
+}
+
+/// After the chunks are those of the new target. A held strip goes with its chunk, any other with the need for it.
+void Viewer::merge_strips(Change& change) {
+  States next = strips_of_target();
+  States kept;
+  auto at = next.begin();
+  for (const State& old : strips_) {
+    while (at != next.end() && at->piece < old.piece) ++at;
+    if (at != next.end() && at->piece == old.piece) {
+      at->phase = old.phase;
+      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, at->urgency});
+    } else if (old.phase == Phase::kInFlight) {
+      change.cancelled.push_back(old.piece);
+    } else if (old.phase == Phase::kHeld && find({old.piece.key, {}}) != nullptr) {
+      kept.push_back(old);
+    }
+  }
+  next.insert(next.end(), kept.begin(), kept.end());
+  sort_unique(next);
+  strips_ = std::move(next);
 }
 
 Viewer::Change Viewer::refresh() {
   Change change;
   States next = target();
   merge_into(next, change);
-  in_flight_ -= change.cancelled.size();
   if (is_view_new_) {
     const auto chunks = static_cast<std::uint32_t>(next.size());
     change.accepted = protocol::ViewAccepted{view_->sequence, view_->view, chunks};
   }
-  states_ = std::move(next);
+  chunks_ = std::move(next);
+  if (takes_strips_) merge_strips(change);
+  in_flight_ -= change.cancelled.size();
   queue_.clear();
-  for (const State& state : states_) {
-    if (state.phase == Phase::kWanted) queue_.push_back({state.key, state.urgency});
+  for (const States* states : {&chunks_, &strips_}) {
+    for (const State& state : *states) {
+      if (state.phase == Phase::kWanted) queue_.push_back({state.piece, state.urgency});
+    }
   }
   std::make_heap(queue_.begin(), queue_.end(), is_less_urgent);
   wanted_ = queue_.size();
@@ -137,12 +215,12 @@ Viewer::Change Viewer::refresh() {
   return change;
 }
 
-std::optional<WantedChunk> Viewer::next_request() {
+std::optional<WantedPiece> Viewer::next_request() {
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), is_less_urgent);
-    const WantedChunk next = queue_.back();
+    const WantedPiece next = queue_.back();
     queue_.pop_back();
-    State* state = find(next.key);
+    State* state = find(next.piece);
     if (state == nullptr || state->phase != Phase::kWanted) continue;
     state->phase = Phase::kInFlight;
     --wanted_;
@@ -152,24 +230,40 @@ std::optional<WantedChunk> Viewer::next_request() {
   return std::nullopt;
 }
 
-void Viewer::put_back(const ChunkKey& key) {
-  State* state = find(key);
+void Viewer::put_back(const Piece& piece) {
+  State* state = find(piece);
   if (state == nullptr || state->phase != Phase::kInFlight) return;
   state->phase = Phase::kWanted;
   --in_flight_;
   ++wanted_;
-  queue_.push_back({key, state->urgency});
+  queue_.push_back({piece, state->urgency});
   std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
 }
 
-Viewer::Delivery Viewer::deliver(const ChunkKey& key, std::uint64_t message_bytes) {
-  State* state = find(key);
+/// A chunk has just been sent: what closes it to its coarser neighbours is wanted now.
+void Viewer::want_strips_of(const State& finer) {
+  for_each_strip_of(finer, [&](const Piece& strip, double urgency) {
+    const auto at = std::lower_bound(strips_.begin(), strips_.end(), strip,
+                                     [](const State& state, const Piece& p) { return state.piece < p; });
+    if (at != strips_.end() && at->piece == strip) return;
+    strips_.insert(at, {strip, kStripUrgency * urgency, Phase::kWanted, 0});
+    queue_.push_back({strip, kStripUrgency * urgency});
+    std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
+    ++wanted_;
+  });
+}
+
+Viewer::Delivery Viewer::deliver(const Piece& piece, std::uint64_t message_bytes, unsigned faces) {
+  State* state = find(piece);
   if (state == nullptr || state->phase != Phase::kInFlight) return Delivery::kUnwanted;
   if (message_bytes > credit_bytes_) return Delivery::kNoCredit;
   credit_bytes_ -= message_bytes;
   state->phase = Phase::kHeld;
   --in_flight_;
+  if (piece.face) return Delivery::kSend;
   ++chunks_sent_;
+  state->faces = static_cast<std::uint8_t>(faces);
+  if (takes_strips_) want_strips_of(*state);
   return Delivery::kSend;
 }
 

@@ -1,5 +1,9 @@
 // What one streaming client sees, holds and still needs: a value without sockets, threads or clocks.
 //
+// Of strips it needs those between a chunk of the target and a held chunk one LOD finer whose surface reaches the face
+// between them: they become wanted as the finer chunks are sent, so that no strip is asked for that would be empty. A
+// strip is held for as long as its chunk is.
+//
 // Messages move it, `refresh` turns the latest view and want into a target, and the session asks it what to request
 // next and whether the client can take what has come. Owner: the session's thread.
 #pragma once
@@ -9,22 +13,37 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/hash.hpp"
+#include "core/grid/chunk_face.hpp"
 #include "protocol/interest_area.hpp"
 #include "protocol/message.hpp"
 
 namespace talus::server {
 
-/// A chunk to ask for, and how soon; smaller is sooner.
-struct WantedChunk {
+/// A chunk, or the strip of one of its faces.
+struct Piece {
   ChunkKey key;
+  std::optional<ChunkFace> face;  ///< nothing for the chunk itself
+  friend auto operator<=>(const Piece&, const Piece&) = default;
+};
+
+struct PieceHash {
+  std::size_t operator()(const Piece& piece) const noexcept {
+    return mix64(ChunkKeyHash{}(piece.key), piece.face ? static_cast<std::uint64_t>(*piece.face) : kChunkFaces);
+  }
+};
+
+/// A piece to ask for, and how soon; smaller is sooner.
+struct WantedPiece {
+  Piece piece;
   double urgency = 0.0;
-  friend bool operator==(const WantedChunk&, const WantedChunk&) = default;
+  friend bool operator==(const WantedPiece&, const WantedPiece&) = default;
 };
 
 class Viewer {
  public:
-  /// `credit_bytes` is what the client can take at first.
-  Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes);
+  /// `credit_bytes` is what the client can take at first; `takes_strips` is false for clients of version 1.
+  Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips);
 
   /// View, Held, Want and Credit. False for a message that is not a viewer's: the client broke the protocol.
   bool on_message(const protocol::Message& message);
@@ -34,22 +53,22 @@ class Viewer {
 
   struct Change {
     std::optional<protocol::ViewAccepted> accepted;  ///< for the latest view, if there was a new one
-    std::vector<ChunkKey> leave;                     ///< held by the client, no longer wanted
-    std::vector<ChunkKey> cancelled;                 ///< in flight, no longer wanted
-    std::vector<WantedChunk> moved;                  ///< in flight, still wanted, with their new urgency
+    std::vector<ChunkKey> leave;                     ///< held by the client, no longer wanted; with their strips
+    std::vector<Piece> cancelled;                    ///< in flight, no longer wanted
+    std::vector<WantedPiece> moved;                  ///< in flight, still wanted, with their new urgency
   };
   /// Makes the latest view and want the target; the latest wins, those between are never looked at.
   Change refresh();
 
-  /// The most urgent chunk that is neither held nor in flight; it is in flight from now on.
-  std::optional<WantedChunk> next_request();
-  /// A chunk in flight could not be had now: it is wanted again.
-  void put_back(const ChunkKey& key);
+  /// The most urgent piece that is neither held nor in flight; it is in flight from now on.
+  std::optional<WantedPiece> next_request();
+  /// A piece in flight could not be had now: it is wanted again.
+  void put_back(const Piece& piece);
 
   enum class Delivery { kSend, kNoCredit, kUnwanted };
-  /// A chunk in flight has come. kSend: it counts as held, and its bytes as taken. kNoCredit: nothing changes, ask
-  /// again after the next credit. kUnwanted: nobody waits for it.
-  Delivery deliver(const ChunkKey& key, std::uint64_t message_bytes);
+  /// A piece in flight has come. kSend: it counts as held, and its bytes as taken. kNoCredit: nothing changes, ask
+  /// again after the next credit. kUnwanted: nobody waits for it. `faces` are those that a chunk's surface reaches.
+  Delivery deliver(const Piece& piece, std::uint64_t message_bytes, unsigned faces = 0);
 
   /// Once after each refresh, when everything wanted has been delivered.
   std::optional<protocol::Idle> take_idle();
@@ -60,28 +79,38 @@ class Viewer {
  private:
   enum class Phase : std::uint8_t { kWanted, kInFlight, kHeld };
   struct State {
-    ChunkKey key;
+    Piece piece;
     double urgency = 0.0;
     Phase phase = Phase::kWanted;
+    std::uint8_t faces = 0;  ///< of a held chunk
   };
-  /// Sorted by key, each key once. A view has some 2,500 of these and changes ten times a second: a merge of two sorted
+  /// Sorted by piece, each once. A view has some 2,500 of these and changes ten times a second: a merge of two sorted
   /// vectors costs a tenth of what hash maps cost.
   using States = std::vector<State>;
 
   static void sort_unique(States& states);
+  static State* find_in(States& states, const Piece& piece);
   States target() const;
-  State* find(const ChunkKey& key);
-  void hold(const std::vector<protocol::HeldChunk>& chunks);
+  State* find(const Piece& piece) { return find_in(piece.face ? strips_ : chunks_, piece); }
+  void hold(const protocol::Held& held);
   void merge_into(States& next, Change& change) const;
+  template <class Visit>
+  void for_each_strip_of(const State& finer, Visit visit);
+  States strips_of_target();
+  void merge_strips(Change& change);
+  void want_strips_of(const State& finer);
 
   const protocol::WorldShape shape_;
   std::optional<protocol::ViewMessage> view_;  ///< the latest, clamped
   std::vector<ChunkKey> want_;                 ///< nearest first
+  std::vector<StripKey> want_strips_;
+  const bool takes_strips_;
   bool is_view_new_ = false;
   bool is_stale_ = false;
 
-  States states_;
-  std::vector<WantedChunk> queue_;  ///< a heap, most urgent first; entries whose phase has changed are skipped
+  States chunks_;
+  States strips_;
+  std::vector<WantedPiece> queue_;  ///< a heap, most urgent first; entries whose phase has changed are skipped
   std::size_t in_flight_ = 0;
   std::size_t wanted_ = 0;
   bool is_idle_due_ = false;

@@ -99,10 +99,10 @@ class StreamPeer {
     return std::nullopt;
   }
 
-  bool open(std::uint64_t credit_bytes) {
+  bool open(std::uint64_t credit_bytes, std::uint16_t version = 1) {
     protocol::Hello hello;
-    hello.version_low = 1;
-    hello.version_high = 1;
+    hello.version_low = version;
+    hello.version_high = version;
     hello.world = "default";
     hello.formats = {"drc"};
     hello.credit_bytes = credit_bytes;

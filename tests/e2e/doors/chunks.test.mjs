@@ -5,7 +5,7 @@ import { after, before, describe, test } from 'node:test';
 import gltf from 'gltf-validator';
 import { request } from './frame/http.mjs';
 import { startServer } from './frame/server.mjs';
-import { chunkPath, columnPath, manifestOf, meshPath, surfaceKeys } from './frame/terrain.mjs';
+import { chunkPath, columnPath, manifestOf, meshPath, seamPath, surfaceKeys } from './frame/terrain.mjs';
 
 const limit = 2 ** 30 - 1;
 const places = [[40, 40], [-2500, 1800], [30_000, -70_000], [-1, -1], [1_000_000_000, -1_000_000_000]];
@@ -49,6 +49,29 @@ describe('chunks', () => {
       assert.equal(answer.headers['talus-chunk'], kind);
       assert.equal(answer.body.length, 0);
     }
+  });
+
+  test('have seam strips for their six faces, 204 where there is none, never one at LOD 0', async () => {
+    let strips = 0;
+    for (const lod of [0, 1, 4]) {
+      for (const key of await surfaceKeys(http, manifest, lod, places)) {
+        for (const face of ['px', 'nx', 'py', 'ny', 'pz', 'nz']) {
+          const answer = await request(http, seamPath(manifest, key, face));
+          assert.ok(answer.status === (lod === 0 ? 204 : 200) || answer.status === 204, `${answer.status}`);
+          assert.match(answer.headers.etag, /\.seam1"$/);
+          assert.equal(answer.headers['cache-control'], 'public, max-age=31536000, immutable');
+          if (answer.status === 204) continue;
+          strips += 1;
+          assert.equal(answer.body.subarray(0, 5).toString(), 'DRACO');
+          const again = await request(http, seamPath(manifest, key, face), { headers: { 'If-None-Match': answer.headers.etag } });
+          assert.equal(again.status, 304);
+        }
+      }
+    }
+    assert.ok(strips >= 10, `${strips} strips`);
+    const unknown = await request(http, seamPath(manifest, { lod: 1, x: 0, y: 0, z: 0 }, 'up'));
+    assert.equal(unknown.status, 400);
+    assert.equal(JSON.parse(unknown.body.toString()).error, 'bad_face');
   });
 
   test('are valid glTF', async () => {

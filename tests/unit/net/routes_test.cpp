@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <utility>
 
 #include "server/net/url_text.hpp"
 
@@ -89,6 +91,35 @@ TEST_F(Routes, NameTheFieldOfEveryMalformedCoordinate) {
       EXPECT_EQ(answer->status, 400) << path;
       EXPECT_NE(answer->text.find("\"" + code + "\""), std::string::npos) << path << " -> " << answer->text;
     }
+  }
+}
+
+TEST_F(Routes, ReadTheFaceOfASeamStrip) {
+  const Route route = resolve_target("/v1/worlds/default/seams/3/-4/0/7/nz.drc");
+  const auto* strip = std::get_if<ChunkRoute>(&route);
+  ASSERT_NE(strip, nullptr);
+  EXPECT_EQ(strip->name.key, (ChunkKey{3, -4, 0, 7}));
+  EXPECT_EQ(strip->name.format, PayloadFormat::kStrip);
+  EXPECT_EQ(strip->name.face, ChunkFace::kNz);
+  const std::string& etag = (*worlds_)[0]->etag(PayloadFormat::kStrip);
+  EXPECT_NE(etag, (*worlds_)[0]->etag(PayloadFormat::kDraco));
+  const Route known = resolve_target("/v1/worlds/default/seams/3/-4/0/7/nz.drc", "", HttpMethod::kGet, etag);
+  ASSERT_NE(answer_in(known), nullptr);
+  EXPECT_EQ(answer_in(known)->status, 304);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kBad{{{"bad_seam", "3/0/0/0"},
+                                                                               {"bad_seam", "3/0/0/0/px.drc/1"},
+                                                                               {"bad_format", "3/0/0/0/px"},
+                                                                               {"bad_format", "3/0/0/0/px.glb"},
+                                                                               {"bad_face", "3/0/0/0/top.drc"},
+                                                                               {"bad_face", "3/0/0/0/PX.drc"},
+                                                                               {"bad_face", "3/0/0/0/.drc"},
+                                                                               {"bad_lod", "13/0/0/0/px.drc"},
+                                                                               {"bad_z", "3/0/0/1073741824/px.drc"}}};
+  for (const auto& [code, path] : kBad) {
+    const Route bad = resolve_target("/v1/worlds/default/seams/" + std::string(path));
+    ASSERT_NE(answer_in(bad), nullptr) << path;
+    EXPECT_EQ(answer_in(bad)->status, 400) << path;
+    EXPECT_NE(answer_in(bad)->text.find("\"" + std::string(code) + "\""), std::string::npos) << answer_in(bad)->text;
   }
 }
 

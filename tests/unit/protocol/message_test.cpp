@@ -27,21 +27,26 @@ std::vector<Message> one_of_each() {
           ViewMessage{9, view},
           ViewAccepted{9, accepted, 3000},
           Held{{{{0, 1, 2, 3}, 4}, {{kLodMax, kChunkLimit, -kChunkLimit, 0}, 5}}},
+          Held{{{{0, 1, 2, 3}, 4}}, {0x15}, {{{1, 0, 1, 1}, ChunkFace::kNz}}},
           Want{{{{8, -1, -1, -1}, 0}}},
-          ChunkHead{{2, -3, 4, -5}, 6, ChunkKind::kMesh, 11},
+          Want{{}, {{{8, -1, -1, -1}, ChunkFace::kPx}, {{1, 2, 3, 4}, ChunkFace::kNy}}},
+          ChunkHead{{2, -3, 4, -5}, 6, ChunkKind::kMesh, 11, 0x2A},
           ChunkHead{{2, -3, 4, -5}, 6, ChunkKind::kAir, 0},
           Leave{{{0, 0, 0, 0}, {1, 1, 1, 1}}},
           Idle{9, 12345},
           Credit{std::numeric_limits<std::uint64_t>::max()},
           Ping{77},
           Pong{77},
-          Bye{ByeReason::kDraining, "see you"}};
+          Bye{ByeReason::kDraining, "see you"},
+          StripHead{{{2, -3, 4, -5}, ChunkFace::kPy}, 6, 7},
+          StripHead{{{2, -3, 4, -5}, ChunkFace::kPx}, 0, 0}};
 }
 
 /// A whole message: the head, and behind a chunk as many payload bytes as it declares.
 std::vector<std::byte> whole(const Message& message) {
   std::vector<std::byte> bytes = encode(message);
   if (const auto* chunk = std::get_if<ChunkHead>(&message)) bytes.resize(bytes.size() + chunk->payload_bytes);
+  if (const auto* strip = std::get_if<StripHead>(&message)) bytes.resize(bytes.size() + strip->payload_bytes);
   return bytes;
 }
 
@@ -65,6 +70,14 @@ TEST(Message, KeepsItsFields) {
   EXPECT_EQ(h.credit_bytes, 42U);
   const auto held = decode(encode(Held{{{{3, -1, 2, -3}, 9}}}));
   EXPECT_EQ(std::get<Held>(held->message).chunks, (std::vector<HeldChunk>{{{3, -1, 2, -3}, 9}}));
+}
+
+TEST(Message, NamesStripsByFacesThatAChunkHas) {
+  const auto want = decode(encode(Want{{}, {{{3, -1, 2, -3}, ChunkFace::kNz}}}));
+  EXPECT_EQ(std::get<Want>(want->message).strips, (std::vector<StripKey>{{{3, -1, 2, -3}, ChunkFace::kNz}}));
+  const std::vector<std::byte> head = encode(StripHead{{{3, -1, 2, -3}, static_cast<ChunkFace>(6)}, 0, 0});
+  EXPECT_EQ(decode(head).error(), MessageError::kBadKey);
+  EXPECT_EQ(decode(encode(Want{{}, {{{3, -1, 2, -3}, static_cast<ChunkFace>(6)}}})).error(), MessageError::kBadKey);
 }
 
 TEST(Message, GivesAViewAsItCame) {

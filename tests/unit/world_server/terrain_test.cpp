@@ -38,6 +38,44 @@ TEST(TerrainBuilder, GivesTheBytesOfBuildAndEncodeWhateverWasBuiltBefore) {
   EXPECT_GT(meshes, 5);
 }
 
+TEST(TerrainBuilder, GivesTheBytesOfAStripWhateverWasBuiltBefore) {
+  Worlds worlds;
+  worlds.push_back(std::make_unique<const World>(Manifest{}));
+  const WorldFunction& world = worlds[0]->function();
+  const SystemClock clock;
+  Metrics metrics;
+  TerrainBuilder builder(worlds, clock, metrics, 1);
+  const ColumnLoader columns = [&](const ChunkKey& key, ColumnBlock& out) {
+    world.columns(chunk_columns(world, key), out);
+  };
+  int strips = 0;
+  for (std::int32_t y = -4; y < 12; ++y) {
+    for (const ChunkFace face : kAllChunkFaces) {
+      PayloadName name;
+      name.format = PayloadFormat::kStrip;
+      name.key = {4, 1, y, 3};
+      name.face = face;
+      const auto payload = builder.build(name, 0, CancelToken{});
+      ASSERT_TRUE(payload.has_value());
+      StripScratch scratch;
+      ChunkMesh mesh;
+      build_strip(world, name.key, face, columns, scratch, mesh);
+      ASSERT_EQ(payload->bytes.empty(), mesh.indices.empty());
+      if (mesh.indices.empty()) continue;
+      ++strips;
+      const auto lattice = protocol::strip_lattice(name.key, world.cells(), world.voxel_m());
+      EXPECT_EQ(payload->bytes, *protocol::encode_draco(mesh, lattice));
+      const auto decoded = protocol::decode_draco(payload->bytes, lattice);
+      ASSERT_TRUE(decoded.has_value());
+      EXPECT_EQ(decoded->triangles(), mesh.triangles()) << "flat triangles are kept";
+    }
+  }
+  EXPECT_GE(strips, 4);
+  PayloadName finest;
+  finest.format = PayloadFormat::kStrip;
+  EXPECT_TRUE(builder.build(finest, 0, CancelToken{})->bytes.empty()) << "nothing is finer than LOD 0";
+}
+
 TEST(TerrainBuilder, MakesNothingOnceCancelled) {
   Worlds worlds;
   worlds.push_back(std::make_unique<const World>(Manifest{}));

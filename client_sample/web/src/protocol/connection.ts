@@ -1,6 +1,7 @@
 // One session with a server, for as long as the page lives: hello, views, credit, pings, and after a loss the same
 // again with what is already held, so that nothing is sent twice. Owner: the main thread.
 
+import type { StripKey } from './chunk_face';
 import type { ChunkKey, Vec3 } from './chunk_key';
 import type { AcceptedView } from './interest_area';
 import { kKeysPerMessageMax, kVersionHigh, kVersionLow } from './limits';
@@ -18,6 +19,7 @@ import {
   encodePing,
   encodePong,
   encodeView,
+  encodeWant,
 } from './message';
 
 /// What the server may have on the way to us before we have decoded any of it, bytes.
@@ -50,9 +52,17 @@ export interface Arrival {
   key: ChunkKey;
   revision: bigint;
   kind: ChunkKind;
+  faces: number; // that the surface reaches: bits of ChunkFace
   payload: Uint8Array;
   /// Give this back with `consumed` once the chunk has been decoded.
   bytes: number;
+}
+
+export interface StripArrival {
+  strip: StripKey;
+  revision: bigint;
+  payload: Uint8Array; // empty: a strip without triangles
+  bytes: number; // as of Arrival
 }
 
 export interface ConnectionEvents {
@@ -60,10 +70,11 @@ export interface ConnectionEvents {
   welcome(worldHash: string, manifest: unknown): void;
   accepted(sequence: number, view: AcceptedView): void;
   arrival(arrival: Arrival): void;
+  strip(arrival: StripArrival): void;
   leave(keys: ChunkKey[]): void;
   idle(viewSequence: number): void;
   /// What survives a lost connection; asked for after every welcome.
-  held(): HeldChunk[];
+  held(): { chunks: HeldChunk[]; strips: StripKey[] };
 }
 
 export class Connection {
@@ -122,6 +133,11 @@ export class Connection {
     if (!this.welcomed) return;
     this.viewSequence += 1;
     this.send(encodeView({ sequence: this.viewSequence, ...view }));
+  }
+
+  /// Asks for strips that no view needs; the latest wins, and it ends with the session.
+  wantStrips(strips: StripKey[]): void {
+    if (this.welcomed) this.send(encodeWant(strips.slice(0, kKeysPerMessageMax)));
   }
 
   /// `bytes` of an arrival have been decoded: the server may send as many again. Those of an earlier session do not
@@ -184,6 +200,8 @@ export class Connection {
         return this.events.accepted(message.sequence, message.view);
       case 'chunk':
         return this.events.arrival({ ...message, bytes });
+      case 'strip':
+        return this.events.strip({ ...message, bytes });
       case 'leave':
         return this.events.leave(message.keys);
       case 'idle':
@@ -202,9 +220,12 @@ export class Connection {
     this.attempt = 0;
     this.welcomed = true;
     this.events.welcome(message.worldHash, JSON.parse(message.manifestJson));
-    const held = this.events.held();
-    for (let i = 0; i < held.length; i += kKeysPerMessageMax) {
-      this.send(encodeHeld(held.slice(i, i + kKeysPerMessageMax)));
+    const { chunks, strips } = this.events.held();
+    for (let i = 0; i < chunks.length; i += kKeysPerMessageMax) {
+      this.send(encodeHeld(chunks.slice(i, i + kKeysPerMessageMax), []));
+    }
+    for (let i = 0; i < strips.length; i += kKeysPerMessageMax) {
+      this.send(encodeHeld([], strips.slice(i, i + kKeysPerMessageMax)));
     }
     this.events.state({ phase: 'open', session: message.session });
     if (this.lastView) this.sendView(this.lastView);

@@ -1,7 +1,8 @@
 // The numbers both ends agree on before they have spoken: protocol/limits.hpp, as far as a viewer needs them.
 
-export const kVersionLow = 1;
-export const kVersionHigh = 1;
+/// Without the strips of version 2 there would be light between LODs.
+export const kVersionLow = 2;
+export const kVersionHigh = 2;
 
 /// Largest message a server sends, in bytes; anything longer is a broken peer.
 export const kServerMessageBytesMax = 1024 * 1024;

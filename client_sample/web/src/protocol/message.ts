@@ -2,6 +2,7 @@
 // protocol/schema/talus.fbs. One message per binary WebSocket frame. Pure.
 
 import { Builder, ByteBuffer } from 'flatbuffers';
+import type { ChunkFace, StripKey } from './chunk_face';
 import type { ChunkKey, Vec3 } from './chunk_key';
 import type { AcceptedView } from './interest_area';
 import { kChunkLimit, kLodMax, kServerMessageBytesMax } from './limits';
@@ -22,9 +23,12 @@ import { Ping } from './generated/talus/wire/ping';
 import { Pong } from './generated/talus/wire/pong';
 import { Refused } from './generated/talus/wire/refused';
 import { RefusedReason } from './generated/talus/wire/refused-reason';
+import { Strip } from './generated/talus/wire/strip';
+import { StripKey as WireStripKey } from './generated/talus/wire/strip-key';
 import { Vec3 as WireVec3 } from './generated/talus/wire/vec3';
 import { View } from './generated/talus/wire/view';
 import { ViewAccepted } from './generated/talus/wire/view-accepted';
+import { Want } from './generated/talus/wire/want';
 import { Welcome } from './generated/talus/wire/welcome';
 
 export { ByeReason, ChunkKind, RefusedReason };
@@ -32,6 +36,7 @@ export { ByeReason, ChunkKind, RefusedReason };
 export interface HeldChunk {
   key: ChunkKey;
   revision: bigint;
+  faces: number; // that its surface reaches: bits of ChunkFace
 }
 
 export interface HelloFields {
@@ -58,7 +63,8 @@ export type ServerMessage =
   | { type: 'welcome'; version: number; session: string; worldHash: string; format: string; manifestJson: string }
   | { type: 'refused'; reason: RefusedReason; message: string; versions: number[] }
   | { type: 'viewAccepted'; sequence: number; view: AcceptedView; chunks: number }
-  | { type: 'chunk'; key: ChunkKey; revision: bigint; kind: ChunkKind; payload: Uint8Array }
+  | { type: 'chunk'; key: ChunkKey; revision: bigint; kind: ChunkKind; faces: number; payload: Uint8Array }
+  | { type: 'strip'; strip: StripKey; revision: bigint; payload: Uint8Array }
   | { type: 'leave'; keys: ChunkKey[] }
   | { type: 'idle'; viewSequence: number; chunksSent: bigint }
   | { type: 'ping'; nonce: bigint }
@@ -108,15 +114,37 @@ export function encodeView(view: ViewFields): Uint8Array {
   });
 }
 
-/// At most kKeysPerMessageMax chunks.
-export function encodeHeld(chunks: HeldChunk[]): Uint8Array {
+function stripVector(builder: Builder, strips: StripKey[]): void {
+  for (let i = strips.length - 1; i >= 0; --i) {
+    const { key, face } = strips[i]!;
+    WireStripKey.createStripKey(builder, key.lod, key.x, key.y, key.z, face);
+  }
+}
+
+/// At most kKeysPerMessageMax chunks and strips together.
+export function encodeHeld(chunks: HeldChunk[], strips: StripKey[]): Uint8Array {
   return frame(Message.Held, (builder) => {
     Held.startChunksVector(builder, chunks.length);
     for (let i = chunks.length - 1; i >= 0; --i) {
       const { key, revision } = chunks[i]!;
       HeldKey.createHeldKey(builder, key.lod, key.x, key.y, key.z, revision);
     }
-    return Held.createHeld(builder, builder.endVector());
+    const chunkVector = builder.endVector();
+    const faces = Held.createFacesVector(builder, new Uint8Array(chunks.map((chunk) => chunk.faces)));
+    Held.startStripsVector(builder, strips.length);
+    stripVector(builder, strips);
+    return Held.createHeld(builder, chunkVector, faces, builder.endVector());
+  });
+}
+
+/// Strips that no view asks for; at most kKeysPerMessageMax. Replaces the last want.
+export function encodeWant(strips: StripKey[]): Uint8Array {
+  return frame(Message.Want, (builder) => {
+    Want.startChunksVector(builder, 0);
+    const chunks = builder.endVector();
+    Want.startStripsVector(builder, strips.length);
+    stripVector(builder, strips);
+    return Want.createWant(builder, chunks, builder.endVector());
   });
 }
 
@@ -160,7 +188,14 @@ function decodeChunk(table: Chunk, payload: Uint8Array): ServerMessage {
   const kind = table.kind();
   if (table.payloadBytes() !== payload.length) throw new MessageError('a payload is not as long as its head says');
   if ((kind === ChunkKind.Mesh) !== payload.length > 0) throw new MessageError('a payload does not fit its kind');
-  return { type: 'chunk', key: plainKey(table.key()), revision: table.revision(), kind, payload };
+  return { type: 'chunk', key: plainKey(table.key()), revision: table.revision(), kind, faces: table.faces(), payload };
+}
+
+function decodeStrip(table: Strip, payload: Uint8Array): ServerMessage {
+  if (table.payloadBytes() !== payload.length) throw new MessageError('a payload is not as long as its head says');
+  const face = table.face();
+  if (face > 5) throw new MessageError('a face that no chunk has');
+  return { type: 'strip', strip: { key: plainKey(table.key()), face: face as ChunkFace }, revision: table.revision(), payload };
 }
 
 function decodeRefused(table: Refused): ServerMessage {
@@ -190,6 +225,8 @@ function decodeBody(envelope: Envelope, payload: Uint8Array): ServerMessage {
       return decodeViewAccepted(body(new ViewAccepted()));
     case Message.Chunk:
       return decodeChunk(body(new Chunk()), payload);
+    case Message.Strip:
+      return decodeStrip(body(new Strip()), payload);
     case Message.Leave: {
       const leave = body(new Leave());
       const keys = Array.from({ length: leave.keysLength() }, (_, i) => plainKey(leave.keys(i)));

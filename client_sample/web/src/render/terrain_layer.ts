@@ -1,13 +1,16 @@
-// The chunks on the GPU: one mesh and one draw call each, one material for all. Chunks are placed relative to the
-// camera every frame, in doubles, so that a world 10^9 m wide does not shake.
+// The chunks and strips on the GPU: one mesh and one draw call each, one material for all. They are placed relative to
+// the camera every frame, in doubles, so that a world 10^9 m wide does not shake.
 
 import * as THREE from 'three';
 import type { ChunkKey, WorldShape } from '../protocol/chunk_key';
 import { edgeOf } from '../protocol/chunk_key';
 import { type PackedMesh, kStepsPerCell } from '../world/packed_mesh';
 import type { PlacedSurface } from '../world/surface_index';
+import { Fades } from './fades';
 import type { SharedUniforms } from './shared_uniforms';
 import { kAtmosphere, kHeader } from './shared_uniforms';
+import fadeShader from './shaders/fade.glsl?raw';
+import seamShader from './shaders/seam.frag?raw';
 import shadowShader from './shaders/shadow.glsl?raw';
 import fragmentShader from './shaders/terrain.frag?raw';
 import vertexShader from './shaders/terrain.vert?raw';
@@ -15,7 +18,7 @@ import { strataTable } from './tables';
 
 const kPaletteSize = 7;
 
-/// A chunk that can be drawn and stood on.
+/// A chunk that can be drawn and stood on, or the strip of one of its faces.
 export class ChunkMesh implements PlacedSurface {
   readonly object: THREE.Mesh;
   readonly cornerX: number;
@@ -25,23 +28,22 @@ export class ChunkMesh implements PlacedSurface {
   readonly cells: number;
   readonly positions: Int16Array;
   readonly indices: Uint16Array | Uint32Array;
-  readonly surfaceIndices: number;
 
   constructor(
     readonly key: ChunkKey,
     shape: WorldShape,
     packed: PackedMesh,
-    material: THREE.Material,
+    readonly isStrip: boolean,
   ) {
     const edge = edgeOf(shape, key.lod);
     this.cornerX = key.x * edge;
     this.cornerY = key.y * edge;
     this.cornerZ = key.z * edge;
     this.cells = shape.cells;
-    this.stepM = edge / shape.cells / kStepsPerCell;
+    // A strip lies on the lattice of the finer chunks it closes to.
+    this.stepM = edge / shape.cells / kStepsPerCell / (isStrip ? 2 : 1);
     this.positions = packed.positions;
     this.indices = packed.indices;
-    this.surfaceIndices = packed.surfaceIndices;
 
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(packed.positions, 4));
@@ -50,7 +52,7 @@ export class ChunkMesh implements PlacedSurface {
     const low = new THREE.Vector3(...packed.low);
     const high = new THREE.Vector3(...packed.high);
     geometry.boundingSphere = new THREE.Box3(low, high).getBoundingSphere(new THREE.Sphere());
-    this.object = new THREE.Mesh(geometry, material);
+    this.object = new THREE.Mesh(geometry);
     this.object.matrixAutoUpdate = false;
     this.object.matrixWorldAutoUpdate = false;
   }
@@ -75,13 +77,20 @@ export class TerrainLayer {
   readonly material: THREE.RawShaderMaterial;
   /// Changes whenever the set of shown chunks does.
   edition = 0;
-  private readonly shown = new Set<ChunkMesh>();
+  /// Triangles as lines, and strips in a colour of their own.
+  private wire = false;
+  private seams = false;
+  private readonly fading: THREE.RawShaderMaterial;
+  private readonly fades: Fades<ChunkMesh>;
+  private readonly seamMaterial: THREE.RawShaderMaterial;
+  private readonly placed = new Set<ChunkMesh>(); // shown or leaving
+  private readonly disposals = new Set<ChunkMesh>(); // when they have left
 
   constructor(shared: SharedUniforms, shadow: Record<string, THREE.IUniform>) {
     this.material = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
       vertexShader,
-      fragmentShader: kHeader + kAtmosphere + shadowShader + fragmentShader,
+      fragmentShader: kHeader + kAtmosphere + shadowShader + fadeShader + fragmentShader,
       uniforms: {
         ...shared,
         ...shadow,
@@ -90,7 +99,30 @@ export class TerrainLayer {
         uPalette: { value: Array.from({ length: kPaletteSize }, () => new THREE.Color(0.4, 0.4, 0.4)) },
       },
     });
+    this.fading = this.material.clone();
+    this.fading.uniforms = { ...this.material.uniforms };
+    this.fading.defines = { FADING: 1 };
+    this.fades = new Fades(this.fading);
+    this.seamMaterial = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader,
+      fragmentShader: seamShader,
+      uniforms: { ...shared },
+      side: THREE.DoubleSide,
+    });
     this.scene.matrixWorldAutoUpdate = false;
+  }
+
+  get overlay(): { wire: boolean; seams: boolean } {
+    return { wire: this.wire, seams: this.seams };
+  }
+
+  setOverlay(wire: boolean, seams: boolean): void {
+    this.wire = wire;
+    this.seams = seams;
+    this.material.wireframe = wire;
+    this.fading.wireframe = wire;
+    for (const chunk of this.placed) if (!this.fades.has(chunk)) this.dress(chunk);
   }
 
   /// Colours of the world's materials, `#rrggbb` or 0xRRGGBB, in the order of their indices.
@@ -100,24 +132,41 @@ export class TerrainLayer {
   }
 
   show(chunk: ChunkMesh): void {
-    this.shown.add(chunk);
+    this.placed.add(chunk);
     this.scene.add(chunk.object);
     this.edition += 1;
+    this.fades.begin(chunk, false, () => this.dress(chunk));
   }
 
   hide(chunk: ChunkMesh): void {
-    this.shown.delete(chunk);
-    this.scene.remove(chunk.object);
     this.edition += 1;
+    this.fades.begin(chunk, true, () => {
+      this.placed.delete(chunk);
+      this.scene.remove(chunk.object);
+      this.edition += 1;
+      if (this.disposals.delete(chunk)) chunk.dispose();
+    });
   }
 
-  placeRelativeTo(x: number, y: number, z: number): void {
-    for (const chunk of this.shown) chunk.placeRelativeTo(x, y, z);
+  /// A hidden chunk is not shown again; what is still leaving goes when it has left.
+  dispose(chunk: ChunkMesh): void {
+    if (this.fades.isLeaving(chunk)) this.disposals.add(chunk);
+    else chunk.dispose();
+  }
+
+  /// Once a frame, before it is drawn.
+  update(x: number, y: number, z: number, now_ms: number): void {
+    this.fades.advance(now_ms);
+    for (const chunk of this.placed) chunk.placeRelativeTo(x, y, z);
+  }
+
+  private dress(chunk: ChunkMesh): void {
+    chunk.object.material = this.seams && chunk.isStrip ? this.seamMaterial : this.material;
   }
 
   get triangles(): number {
     let sum = 0;
-    for (const chunk of this.shown) sum += chunk.surfaceIndices / 3;
+    for (const chunk of this.placed) if (!this.fades.isLeaving(chunk)) sum += chunk.indices.length / 3;
     return sum;
   }
 }

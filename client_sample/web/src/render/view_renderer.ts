@@ -86,7 +86,7 @@ export class ViewRenderer {
     const { renderer, terrain } = this;
     renderer.info.reset();
     this.aim(pose, now_ms);
-    terrain.placeRelativeTo(pose.x, pose.y, pose.z);
+    terrain.update(pose.x, pose.y, pose.z, now_ms);
     this.shadows.update(terrain, pose.x, pose.y, pose.z, now_ms);
     renderer.setRenderTarget(this.target);
     renderer.clear();

@@ -11,6 +11,8 @@ export interface InputActions {
   toggleHelp(): void;
   toggleHud(): void;
   share(): void;
+  toggleWire(): void;
+  toggleSeams(): void;
   jump(): void;
 }
 
@@ -70,6 +72,8 @@ export class Input {
     if (event.code === 'KeyH' || event.key === '?') this.actions.toggleHelp();
     if (event.code === 'KeyU') this.actions.toggleHud();
     if (event.code === 'KeyC') this.actions.share();
+    if (event.code === 'KeyG') this.actions.toggleWire();
+    if (event.code === 'KeyL') this.actions.toggleSeams();
   }
 
   private wheel(event: WheelEvent): void {

@@ -8,6 +8,7 @@ export interface TestDoor {
   flyTo(x: number, y: number, z: number, yawDegrees?: number, pitchDegrees?: number): void;
   flyAlong(x: number, y: number, z: number, seconds: number): Promise<void>;
   walk(on: boolean): void;
+  overlay(wire: boolean, seams: boolean): void;
   /// What is drawn at a point of the screen, both 0..1 from the lower left; null for sky and sea.
   pick(right: number, up: number): { distanceM: number; name: string } | null;
   ground(x: number, z: number): number | null;
@@ -37,6 +38,7 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
     walk: (on) => {
       if (body.walking !== on) viewer.toggleWalk();
     },
+    overlay: (wire, seams) => renderer.terrain.setOverlay(wire, seams),
     pick: (right, up) => stream.pick(body, renderer.rayThrough(right, up)),
     ground: (x, z) => viewer.ground(x, z, Infinity)?.heightM ?? null,
   };

@@ -58,13 +58,16 @@ export class Viewer {
       toggleHelp: () => hud.toggleHelp(),
       toggleHud: () => hud.toggleFigures(),
       share: () => this.share(),
+      toggleWire: () => this.toggleOverlay(true, false),
+      toggleSeams: () => this.toggleOverlay(false, true),
       jump: () => jump(this.body, this.ground),
     });
     this.stream = new WorldStream<ChunkMesh>(streamUrl, manifest, {
-      create: (key, shape, packed) => new ChunkMesh(key, shape, packed, renderer.terrain.material),
-      show: (_, chunk) => renderer.terrain.show(chunk),
-      hide: (_, chunk) => renderer.terrain.hide(chunk),
-      dispose: (chunk) => chunk.dispose(),
+      create: (key, shape, packed) => new ChunkMesh(key, shape, packed, false),
+      createStrip: (strip, shape, packed) => new ChunkMesh(strip.key, shape, packed, true),
+      show: (chunk) => renderer.terrain.show(chunk),
+      hide: (chunk) => renderer.terrain.hide(chunk),
+      dispose: (chunk) => renderer.terrain.dispose(chunk),
       state: (state) => this.connectionChanged(state),
       fault: (why) => this.faults.push(why),
     });
@@ -109,6 +112,14 @@ export class Viewer {
     this.body.walking = !this.body.walking;
     this.body.velocityX = this.body.velocityY = this.body.velocityZ = 0;
     this.hud.say(this.body.walking ? 'Walking' : 'Flying');
+  }
+
+  private toggleOverlay(wire: boolean, seams: boolean): void {
+    const { terrain } = this.renderer;
+    const before = terrain.overlay;
+    terrain.setOverlay(before.wire !== wire, before.seams !== seams);
+    if (seams) this.hud.say(before.seams ? 'Seam strips as terrain' : 'Seam strips in colour');
+    else this.hud.say(before.wire ? 'Surfaces' : 'Triangles');
   }
 
   private frame(now_ms: number): void {

@@ -2,27 +2,18 @@
 //
 // A refined place is never a hole: a chunk that is no longer wanted stays drawn until everything that replaces it in
 // the current interest area has arrived (air and rock are arrivals too), then all of it changes in one frame. Drawn
-// chunks never overlap. Owner: the main thread; knows neither the network nor the GPU.
+// chunks never overlap, and what is drawn is closed: seams.ts. Owner: the main thread; knows neither the network nor
+// the GPU.
 
+import type { ChunkFace, StripKey } from '../protocol/chunk_face';
 import { type ChunkKey, nameOfKey } from '../protocol/chunk_key';
 import { kViewLodMax } from '../protocol/limits';
-
-export interface ChunkNode<Mesh> {
-  readonly key: ChunkKey;
-  readonly name: string;
-  readonly parent: ChunkNode<Mesh> | null; // null at the coarsest LOD
-  wanted: boolean; // a leaf of the current interest area
-  wantedAt_ms: number;
-  held: { revision: bigint; ready: boolean; mesh: Mesh | null } | null; // mesh: null for air and rock
-  left: boolean; // the server has stopped counting it as held
-  drawn: boolean;
-  blocked: number; // stamp of the last pass that found a wanted chunk missing here or below
-  dependants: number; // children in the map
-}
+import { ChunkNode, type HeldStrip, type Swap } from './chunk_node';
+import { Seams } from './seams';
 
 export interface DrawTarget<Mesh> {
-  show(node: ChunkNode<Mesh>, mesh: Mesh): void;
-  hide(node: ChunkNode<Mesh>, mesh: Mesh): void;
+  show(mesh: Mesh): void;
+  hide(mesh: Mesh): void;
   dispose(mesh: Mesh): void;
 }
 
@@ -31,6 +22,7 @@ export interface StoreCounts {
   wanted: number;
   ready: number; // of the wanted
   drawn: number; // with a mesh
+  strips: number; // drawn
 }
 
 export class ChunkStore<Mesh> {
@@ -38,11 +30,14 @@ export class ChunkStore<Mesh> {
   private readonly wanted = new Set<ChunkNode<Mesh>>();
   private readonly heldNodes = new Set<ChunkNode<Mesh>>();
   private readonly drawnNodes = new Set<ChunkNode<Mesh>>();
+  private readonly seams: Seams<Mesh>;
   private stamp = 0;
   private changed = false;
   private missing = 0;
 
-  constructor(private readonly target: DrawTarget<Mesh>) {}
+  constructor(private readonly target: DrawTarget<Mesh>) {
+    this.seams = new Seams(this.nodes, target);
+  }
 
   /// Replaces the interest area. `leaves` do not overlap.
   want(leaves: ChunkKey[], now_ms: number): void {
@@ -63,11 +58,11 @@ export class ChunkStore<Mesh> {
   }
 
   /// A chunk has come and is being decoded: it counts as held from now on.
-  arrived(key: ChunkKey, revision: bigint): ChunkNode<Mesh> {
+  arrived(key: ChunkKey, revision: bigint, faces: number): ChunkNode<Mesh> {
     const node = this.intern(key);
     const old = node.held?.mesh ?? null;
     // A newer revision is drawn in the place of the old one only when it is ready.
-    node.held = { revision, ready: false, mesh: old };
+    node.held = { revision, ready: false, mesh: old, faces };
     node.left = false;
     this.heldNodes.add(node);
     return node;
@@ -80,17 +75,40 @@ export class ChunkStore<Mesh> {
       if (mesh !== null) this.target.dispose(mesh);
       return;
     }
-    if (node.drawn && held.mesh !== null) this.target.hide(node, held.mesh);
+    if (node.drawn && held.mesh !== null) this.target.hide(held.mesh);
     if (held.mesh !== null) this.target.dispose(held.mesh);
     held.mesh = mesh;
     held.ready = true;
-    if (node.drawn && mesh !== null) this.target.show(node, mesh);
+    if (node.drawn && mesh !== null) this.target.show(mesh);
     this.changed = true;
   }
 
   /// A chunk that could not be decoded is as if it had never come.
   failed(node: ChunkNode<Mesh>, revision: bigint): void {
     if (node.held?.revision === revision) this.drop(node);
+  }
+
+  /// A strip has come; null if nobody knows its chunk any more. It is ready by `stripReady`.
+  stripArrived({ key, face }: StripKey): HeldStrip<Mesh> | null {
+    const node = this.nodes.get(nameOfKey(key));
+    if (node === undefined) return null;
+    const known = node.strips[face];
+    if (known) return known;
+    const strip: HeldStrip<Mesh> = { ready: false, mesh: null, shown: false };
+    node.strips[face] = strip;
+    return strip;
+  }
+
+  /// The decoded strip of a chunk; `mesh` is null for one without triangles, or that cannot be had.
+  stripReady({ key, face }: StripKey, mesh: Mesh | null): void {
+    const strip = this.nodes.get(nameOfKey(key))?.strips[face];
+    if (strip === undefined || strip.ready) {
+      if (mesh !== null) this.target.dispose(mesh);
+      return;
+    }
+    strip.ready = true;
+    strip.mesh = mesh;
+    this.changed = true;
   }
 
   leave(keys: ChunkKey[]): void {
@@ -116,12 +134,14 @@ export class ChunkStore<Mesh> {
   resolve(): void {
     if (!this.changed) return;
     this.markMissing();
-    for (const node of [...this.drawnNodes]) {
-      if (!node.wanted && !this.mustStay(node)) this.undraw(node);
+    const swaps = this.swapsThatCould();
+    this.seams.holdBack(this.drawnNodes, swaps);
+    for (const node of [...this.drawnNodes]) if (!node.next) this.undraw(node);
+    for (const swap of swaps) {
+      for (const node of swap.fresh) if (node.next) this.draw(node);
+      for (const node of [...swap.old, ...swap.fresh]) node.swap = null;
     }
-    for (const node of this.wanted) {
-      if (!node.drawn && node.held?.ready && !this.isCovered(node)) this.draw(node);
-    }
+    this.seams.show(this.drawnNodes);
     for (const node of [...this.heldNodes]) {
       if (node.left && !node.wanted && !node.drawn) this.drop(node);
     }
@@ -131,16 +151,32 @@ export class ChunkStore<Mesh> {
   counts(): StoreCounts {
     let drawn = 0;
     for (const node of this.drawnNodes) if (node.held?.mesh) drawn += 1;
-    return { held: this.heldNodes.size, wanted: this.wanted.size, ready: this.wanted.size - this.missing, drawn };
+    const [held, wanted] = [this.heldNodes.size, this.wanted.size];
+    return { held, wanted, ready: wanted - this.missing, drawn, strips: this.seams.shownCount };
   }
 
-  /// Whether every wanted chunk is there. Meaningful after resolve().
+  /// Whether every wanted chunk is there and drawn. Meaningful after resolve().
   get complete(): boolean {
-    return !this.changed && this.missing === 0;
+    return !this.changed && this.missing === 0 && this.drawnNodes.size === this.wanted.size;
+  }
+
+  /// Strips without which something that has arrived cannot be drawn, and that no interest area names.
+  get strayStrips(): readonly StripKey[] {
+    return this.seams.stray;
   }
 
   held(): Iterable<ChunkNode<Mesh>> {
     return this.heldNodes;
+  }
+
+  heldStrips(): StripKey[] {
+    const out: StripKey[] = [];
+    for (const node of this.nodes.values()) {
+      node.strips.forEach((strip, face) => {
+        if (strip) out.push({ key: node.key, face: face as ChunkFace });
+      });
+    }
+    return out;
   }
 
   drawn(): Iterable<ChunkNode<Mesh>> {
@@ -165,32 +201,52 @@ export class ChunkStore<Mesh> {
     }
   }
 
-  /// Whether some of what replaces this unwanted chunk, below it or above it, has not arrived.
-  private mustStay(node: ChunkNode<Mesh>): boolean {
-    if (node.blocked === this.stamp) return true;
-    for (let at = node.parent; at !== null; at = at.parent) {
-      if (at.wanted) return !at.held?.ready;
+  /// Every change of one place whose chunks have all arrived, as if it were made; what nothing replaces goes anyway.
+  private swapsThatCould(): Swap<Mesh>[] {
+    const swaps: Swap<Mesh>[] = [];
+    const swapFor = (node: ChunkNode<Mesh>): Swap<Mesh> => {
+      if (node.swap === null) {
+        node.swap = { old: [], fresh: [], on: true };
+        swaps.push(node.swap);
+      }
+      return node.swap;
+    };
+    const goes = (node: ChunkNode<Mesh>, swap: Swap<Mesh>): void => {
+      if (!node.next) return;
+      node.next = false;
+      node.swap = swap;
+      swap.old.push(node);
+    };
+    for (const node of this.wanted) {
+      if (node.drawn || !node.held?.ready) continue;
+      const above = nearest(node.parent, (each) => each.drawn);
+      if (above !== null && above.blocked === this.stamp) continue;
+      const swap = swapFor(above ?? node);
+      if (above !== null) goes(above, swap);
+      node.next = true;
+      node.swap = swap;
+      swap.fresh.push(node);
     }
-    return false;
-  }
-
-  private isCovered(node: ChunkNode<Mesh>): boolean {
-    for (let at = node.parent; at !== null; at = at.parent) {
-      if (at.drawn) return true;
+    for (const node of this.drawnNodes) {
+      if (node.wanted || node.swap !== null) continue;
+      const above = nearest(node.parent, (each) => each.wanted);
+      if (above === null) node.next = node.blocked === this.stamp;
+      else if (above.held?.ready && above.swap !== null) goes(node, above.swap);
     }
-    return false;
+    return swaps;
   }
 
   private draw(node: ChunkNode<Mesh>): void {
     node.drawn = true;
     this.drawnNodes.add(node);
-    if (node.held?.mesh) this.target.show(node, node.held.mesh);
+    if (node.held?.mesh) this.target.show(node.held.mesh);
   }
 
   private undraw(node: ChunkNode<Mesh>): void {
     node.drawn = false;
+    node.next = false;
     this.drawnNodes.delete(node);
-    if (node.held?.mesh) this.target.hide(node, node.held.mesh);
+    if (node.held?.mesh) this.target.hide(node.held.mesh);
   }
 
   private drop(node: ChunkNode<Mesh>): void {
@@ -199,6 +255,7 @@ export class ChunkStore<Mesh> {
     node.held = null;
     node.left = false;
     this.heldNodes.delete(node);
+    this.seams.forget(node);
     this.changed = true;
     this.release(node);
   }
@@ -210,18 +267,7 @@ export class ChunkStore<Mesh> {
     const { lod, x, y, z } = key;
     const parent = lod < kViewLodMax ? this.intern({ lod: lod + 1, x: x >> 1, y: y >> 1, z: z >> 1 }) : null;
     if (parent) parent.dependants += 1;
-    const node: ChunkNode<Mesh> = {
-      key: { lod, x, y, z },
-      name,
-      parent,
-      wanted: false,
-      wantedAt_ms: 0,
-      held: null,
-      left: false,
-      drawn: false,
-      blocked: 0,
-      dependants: 0,
-    };
+    const node = new ChunkNode<Mesh>({ lod, x, y, z }, parent);
     this.nodes.set(name, node);
     return node;
   }
@@ -229,8 +275,14 @@ export class ChunkStore<Mesh> {
   /// Forgets a node, and its ancestors, once nothing depends on it.
   private release(node: ChunkNode<Mesh> | null): void {
     for (let at = node; at !== null && !at.wanted && at.held === null && at.dependants === 0; at = at.parent) {
+      this.seams.forget(at);
       this.nodes.delete(at.name);
       if (at.parent) at.parent.dependants -= 1;
     }
   }
+}
+
+function nearest<Mesh>(node: ChunkNode<Mesh> | null, is: (node: ChunkNode<Mesh>) => boolean): ChunkNode<Mesh> | null {
+  for (let at = node; at !== null; at = at.parent) if (is(at)) return at;
+  return null;
 }

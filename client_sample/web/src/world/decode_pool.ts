@@ -2,7 +2,7 @@
 // thread.
 
 import type { DecodeAnswer, DecodeJob } from './decode_worker';
-import type { Lattice, PackedMesh } from './packed_mesh';
+import type { PackedMesh } from './packed_mesh';
 
 const kWorkersMax = 4;
 
@@ -28,13 +28,13 @@ export class DecodePool {
   }
 
   /// `outcome` is called once, later. Jobs of one worker finish in order, jobs of different workers in any.
-  decode(payload: Uint8Array, lattice: Lattice, outcome: Outcome): void {
+  decode(payload: Uint8Array, stepM: number, outcome: Outcome): void {
     const id = this.nextId++;
     this.waiting.set(id, outcome);
     const slot = this.workers.reduce((least, each) => (each.queued < least.queued ? each : least));
     slot.queued += 1;
     const own = new Uint8Array(payload); // the frame it came in may hold more than the payload
-    const job: DecodeJob = { id, payload: own, lattice };
+    const job: DecodeJob = { id, payload: own, stepM };
     slot.worker.postMessage(job, [own.buffer]);
   }
 

@@ -3,12 +3,12 @@
 import createDraco from 'three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js';
 import wasmUrl from 'three/examples/jsm/libs/draco/gltf/draco_decoder.wasm?url';
 import { type DracoModule, decodeDraco } from './draco_mesh';
-import { type Lattice, type PackedMesh, packMesh } from './packed_mesh';
+import { type PackedMesh, packMesh } from './packed_mesh';
 
 export interface DecodeJob {
   id: number;
   payload: Uint8Array<ArrayBuffer>;
-  lattice: Lattice;
+  stepM: number; // metres a step of its lattice
 }
 export type DecodeAnswer = { id: number; mesh: PackedMesh } | { id: number; fault: string };
 
@@ -18,7 +18,7 @@ const draco: Promise<DracoModule> = fetch(wasmUrl)
 
 async function answer(job: DecodeJob): Promise<DecodeAnswer> {
   try {
-    return { id: job.id, mesh: packMesh(decodeDraco(await draco, job.payload), job.lattice) };
+    return { id: job.id, mesh: packMesh(decodeDraco(await draco, job.payload), job.stepM) };
   } catch (error) {
     return { id: job.id, fault: error instanceof Error ? error.message : String(error) };
   }

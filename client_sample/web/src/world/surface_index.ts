@@ -11,7 +11,6 @@ export interface PlacedSurface {
   cells: number;
   positions: Int16Array; // PackedMesh
   indices: Uint16Array | Uint32Array;
-  surfaceIndices: number;
 }
 
 export interface SurfacePoint {
@@ -49,11 +48,11 @@ function columnsOfTriangle(surface: PlacedSurface, steps: Int16Array, at: number
 function buildBuckets(surface: PlacedSurface): Buckets {
   const steps = surface.positions;
   const first = new Uint32Array(surface.cells * surface.cells + 1);
-  for (let i = 0; i < surface.surfaceIndices; i += 3) columnsOfTriangle(surface, steps, i, (column) => first[column + 1]!++);
+  for (let i = 0; i < surface.indices.length; i += 3) columnsOfTriangle(surface, steps, i, (column) => first[column + 1]!++);
   for (let c = 1; c < first.length; ++c) first[c]! += first[c - 1]!;
   const triangles = new Uint32Array(first[first.length - 1]!);
   const next = first.slice();
-  for (let i = 0; i < surface.surfaceIndices; i += 3) {
+  for (let i = 0; i < surface.indices.length; i += 3) {
     columnsOfTriangle(surface, steps, i, (column) => {
       triangles[next[column]!++] = i;
     });
@@ -135,7 +134,7 @@ export function surfaceAlong(
   if (enter > exit) return Infinity;
   const steps = surface.positions;
   let nearest = Infinity;
-  for (let i = 0; i < surface.surfaceIndices; i += 3) {
+  for (let i = 0; i < surface.indices.length; i += 3) {
     nearest = Math.min(nearest, rayTriangle(steps, surface.indices, i, o as [number, number, number], towards));
   }
   return nearest * surface.stepM;

@@ -1,8 +1,9 @@
 // The world as it comes: asks for views, decodes what arrives, keeps what is held and says when a view is complete.
 // Owner: the main thread.
 
+import type { StripKey } from '../protocol/chunk_face';
 import { type ChunkKey, type Vec3, type WorldShape, edgeOf } from '../protocol/chunk_key';
-import { Connection, type Arrival, type ConnectionState, type ViewRequest } from '../protocol/connection';
+import { Connection, type Arrival, type ConnectionState, type StripArrival, type ViewRequest } from '../protocol/connection';
 import { interestArea } from '../protocol/interest_area';
 import { kViewLodMax } from '../protocol/limits';
 import { ChunkKind, type HeldChunk } from '../protocol/message';
@@ -17,9 +18,12 @@ const kViewEvery_ms = 140;
 /// Less than this is not worth a message, metres and (for the direction) 1 - cosine.
 const kViewMoved_m = 1.5;
 const kViewTurned = 0.02;
+/// Asking for stray strips, at most this often.
+const kStrayEvery_ms = 100;
 
 export interface StreamEvents<Mesh> extends DrawTarget<Mesh> {
   create(key: ChunkKey, shape: WorldShape, packed: PackedMesh): Mesh;
+  createStrip(strip: StripKey, shape: WorldShape, packed: PackedMesh): Mesh;
   state(state: ConnectionState): void;
   fault(why: string): void;
 }
@@ -36,6 +40,8 @@ export class WorldStream<Mesh extends PlacedSurface> {
   private lastSent_ms = -Infinity;
   private idleFor = 0; // sequence of the view that the server has sent everything of
   private newSession = false;
+  private strayAsked = '';
+  private strayAsked_ms = -Infinity;
 
   constructor(
     url: string,
@@ -50,11 +56,12 @@ export class WorldStream<Mesh extends PlacedSurface> {
       welcome: (worldHash) => this.welcome(worldHash),
       accepted: (sequence, view) => this.accepted(sequence, view),
       arrival: (arrival) => this.arrival(arrival),
+      strip: (arrival) => this.stripArrival(arrival),
       leave: (keys) => this.store.leave(keys),
       idle: (sequence) => {
         this.idleFor = sequence;
       },
-      held: () => this.heldChunks(),
+      held: () => ({ chunks: this.heldChunks(), strips: this.store.heldStrips() }),
     });
     this.connection.open();
   }
@@ -67,6 +74,7 @@ export class WorldStream<Mesh extends PlacedSurface> {
       this.connection.sendView(view);
     }
     this.store.resolve();
+    this.askForStray(now_ms);
   }
 
   /// The viewer has jumped: nothing is complete until the server has heard of it.
@@ -112,6 +120,16 @@ export class WorldStream<Mesh extends PlacedSurface> {
     return best;
   }
 
+  /// While places change one after the other, some meet for a moment that no interest area has side by side.
+  private askForStray(now_ms: number): void {
+    const stray = this.store.strayStrips;
+    const names = stray.map(({ key, face }) => `${key.lod}/${key.x}/${key.y}/${key.z}/${face}`).join(' ');
+    if (names === this.strayAsked || now_ms - this.strayAsked_ms < kStrayEvery_ms) return;
+    this.strayAsked = names;
+    this.strayAsked_ms = now_ms;
+    this.connection.wantStrips([...stray]);
+  }
+
   private hasMoved(view: ViewRequest): boolean {
     const last = this.lastSent;
     if (last === null) return true;
@@ -132,10 +150,11 @@ export class WorldStream<Mesh extends PlacedSurface> {
     this.worldHash = worldHash;
     this.newSession = true;
     this.idleFor = 0;
+    this.strayAsked = '';
   }
 
   private heldChunks(): HeldChunk[] {
-    return [...this.store.held()].map((node) => ({ key: node.key, revision: node.held!.revision }));
+    return [...this.store.held()].map((node) => ({ key: node.key, revision: node.held!.revision, faces: node.held!.faces }));
   }
 
   private accepted(sequence: number, view: Parameters<typeof interestArea>[0]): void {
@@ -146,17 +165,15 @@ export class WorldStream<Mesh extends PlacedSurface> {
   }
 
   private arrival(arrival: Arrival): void {
-    const { key, revision, kind, payload, bytes } = arrival;
+    const { key, revision, kind, faces, payload, bytes } = arrival;
     const session = this.connection.session;
-    const node = this.store.arrived(key, revision);
+    const node = this.store.arrived(key, revision, faces);
     if (kind !== ChunkKind.Mesh) {
       this.store.ready(node, revision, null);
       this.connection.consumed(bytes, session);
       return;
     }
-    const edgeSteps = this.shape.cells * kStepsPerCell;
-    const stepM = edgeOf(this.shape, key.lod) / edgeSteps;
-    this.pool.decode(payload, { stepM, edgeSteps }, (packed, why) => {
+    this.pool.decode(payload, edgeOf(this.shape, key.lod) / (this.shape.cells * kStepsPerCell), (packed, why) => {
       this.connection.consumed(bytes, session);
       if (packed === null) {
         this.fault(`chunk ${node.name} cannot be decoded: ${why}`);
@@ -165,6 +182,23 @@ export class WorldStream<Mesh extends PlacedSurface> {
       }
       this.store.ready(node, revision, this.events.create(key, this.shape, packed));
       if (node.wantedAt_ms > 0) this.lastLatency_ms = performance.now() - node.wantedAt_ms;
+    });
+  }
+
+  private stripArrival({ strip, payload, bytes }: StripArrival): void {
+    const session = this.connection.session;
+    const wanted = this.store.stripArrived(strip);
+    if (wanted === null || wanted.ready || payload.length === 0) {
+      if (wanted !== null) this.store.stripReady(strip, null);
+      this.connection.consumed(bytes, session);
+      return;
+    }
+    // On the lattice of the finer chunks that it closes to.
+    const stepM = edgeOf(this.shape, strip.key.lod - 1) / (this.shape.cells * kStepsPerCell);
+    this.pool.decode(payload, stepM, (packed, why) => {
+      this.connection.consumed(bytes, session);
+      if (packed === null) this.fault(`a strip cannot be decoded: ${why}`);
+      this.store.stripReady(strip, packed && this.events.createStrip(strip, this.shape, packed));
     });
   }
 

@@ -52,8 +52,8 @@ describe('what the viewer says', () => {
   });
 
   test('held keys stay in order', () => {
-    const chunks = [0, 1, 2].map((x) => ({ key: { lod: x, x: -x, y: 2 * x, z: 3 * x }, revision: BigInt(x) }));
-    const held = open(encodeHeld(chunks)).message(new Held()) as Held;
+    const chunks = [0, 1, 2].map((x) => ({ key: { lod: x, x: -x, y: 2 * x, z: 3 * x }, revision: BigInt(x), faces: 9 * x }));
+    const held = open(encodeHeld(chunks, [])).message(new Held()) as Held;
     const back = [0, 1, 2].map((i) => {
       const key = held.chunks(i)!.key()!;
       return { key: { lod: key.lod(), x: key.x(), y: key.y(), z: key.z() }, revision: held.chunks(i)!.revision() };
@@ -67,7 +67,7 @@ describe('what the server says', () => {
 
   test('a chunk comes with its payload', () => {
     const message = decode(chunkMessage(3, 5, ChunkKind.Mesh, 5, payload));
-    expect(message).toEqual({ type: 'chunk', key: { lod: 3, x: 5, y: -2, z: 3 }, revision: 7n, kind: ChunkKind.Mesh, payload });
+    expect(message).toEqual({ type: 'chunk', key: { lod: 3, x: 5, y: -2, z: 3 }, revision: 7n, kind: ChunkKind.Mesh, faces: 0, payload });
   });
 
   test.each([

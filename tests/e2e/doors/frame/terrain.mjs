@@ -21,6 +21,10 @@ export function columnPath(manifest, { lod, x, z }) {
   return `/v1/worlds/${manifest.name}/columns/${lod}/${x}/${z}.height`;
 }
 
+export function seamPath(manifest, { lod, x, y, z }, face) {
+  return `/v1/worlds/${manifest.name}/seams/${lod}/${x}/${y}/${z}/${face}.drc`;
+}
+
 export async function manifestOf(server) {
   return (await json(server.ready.http, `/v1/worlds/${server.ready.worlds[0]}`)).json;
 }

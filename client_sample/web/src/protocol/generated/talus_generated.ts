@@ -17,6 +17,8 @@ export { Ping } from './talus/wire/ping';
 export { Pong } from './talus/wire/pong';
 export { Refused } from './talus/wire/refused';
 export { RefusedReason } from './talus/wire/refused-reason';
+export { Strip } from './talus/wire/strip';
+export { StripKey } from './talus/wire/strip-key';
 export { Vec3 } from './talus/wire/vec3';
 export { View } from './talus/wire/view';
 export { ViewAccepted } from './talus/wire/view-accepted';

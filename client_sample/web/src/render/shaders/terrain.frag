@@ -91,6 +91,7 @@ vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail h
 }
 
 void main() {
+  leaveToTheOther();
   vec3 n = normalize(vNormal);
   float distance = length(vRelative);
   vec3 toEye = -vRelative / distance;

@@ -47,8 +47,13 @@ payloadBytes():number {
   return offset ? this.bb!.readUint32(this.bb_pos + offset) : 0;
 }
 
+faces():number {
+  const offset = this.bb!.__offset(this.bb_pos, 12);
+  return offset ? this.bb!.readUint8(this.bb_pos + offset) : 0;
+}
+
 static startChunk(builder:flatbuffers.Builder) {
-  builder.startObject(4);
+  builder.startObject(5);
 }
 
 static addKey(builder:flatbuffers.Builder, keyOffset:flatbuffers.Offset) {
@@ -67,18 +72,23 @@ static addPayloadBytes(builder:flatbuffers.Builder, payloadBytes:number) {
   builder.addFieldInt32(3, payloadBytes, 0);
 }
 
+static addFaces(builder:flatbuffers.Builder, faces:number) {
+  builder.addFieldInt8(4, faces, 0);
+}
+
 static endChunk(builder:flatbuffers.Builder):flatbuffers.Offset {
   const offset = builder.endObject();
   builder.requiredField(offset, 4) // key
   return offset;
 }
 
-static createChunk(builder:flatbuffers.Builder, keyOffset:flatbuffers.Offset, revision:bigint, kind:ChunkKind, payloadBytes:number):flatbuffers.Offset {
+static createChunk(builder:flatbuffers.Builder, keyOffset:flatbuffers.Offset, revision:bigint, kind:ChunkKind, payloadBytes:number, faces:number):flatbuffers.Offset {
   Chunk.startChunk(builder);
   Chunk.addKey(builder, keyOffset);
   Chunk.addRevision(builder, revision);
   Chunk.addKind(builder, kind);
   Chunk.addPayloadBytes(builder, payloadBytes);
+  Chunk.addFaces(builder, faces);
   return Chunk.endChunk(builder);
 }
 }

@@ -3,6 +3,7 @@
 import * as flatbuffers from 'flatbuffers';
 
 import { HeldKey } from '../../talus/wire/held-key';
+import { StripKey } from '../../talus/wire/strip-key';
 
 
 /**
@@ -36,8 +37,33 @@ chunksLength():number {
   return offset ? this.bb!.__vector_len(this.bb_pos + offset) : 0;
 }
 
+faces(index: number):number|null {
+  const offset = this.bb!.__offset(this.bb_pos, 6);
+  return offset ? this.bb!.readUint8(this.bb!.__vector(this.bb_pos + offset) + index) : 0;
+}
+
+facesLength():number {
+  const offset = this.bb!.__offset(this.bb_pos, 6);
+  return offset ? this.bb!.__vector_len(this.bb_pos + offset) : 0;
+}
+
+facesArray():Uint8Array|null {
+  const offset = this.bb!.__offset(this.bb_pos, 6);
+  return offset ? new Uint8Array(this.bb!.bytes().buffer, this.bb!.bytes().byteOffset + this.bb!.__vector(this.bb_pos + offset), this.bb!.__vector_len(this.bb_pos + offset)) : null;
+}
+
+strips(index: number, obj?:StripKey):StripKey|null {
+  const offset = this.bb!.__offset(this.bb_pos, 8);
+  return offset ? (obj || new StripKey()).__init(this.bb!.__vector(this.bb_pos + offset) + index * 20, this.bb!) : null;
+}
+
+stripsLength():number {
+  const offset = this.bb!.__offset(this.bb_pos, 8);
+  return offset ? this.bb!.__vector_len(this.bb_pos + offset) : 0;
+}
+
 static startHeld(builder:flatbuffers.Builder) {
-  builder.startObject(1);
+  builder.startObject(3);
 }
 
 static addChunks(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset) {
@@ -48,14 +74,40 @@ static startChunksVector(builder:flatbuffers.Builder, numElems:number) {
   builder.startVector(24, numElems, 8);
 }
 
+static addFaces(builder:flatbuffers.Builder, facesOffset:flatbuffers.Offset) {
+  builder.addFieldOffset(1, facesOffset, 0);
+}
+
+static createFacesVector(builder:flatbuffers.Builder, data:number[]|Uint8Array):flatbuffers.Offset {
+  builder.startVector(1, data.length, 1);
+  for (let i = data.length - 1; i >= 0; i--) {
+    builder.addInt8(data[i]!);
+  }
+  return builder.endVector();
+}
+
+static startFacesVector(builder:flatbuffers.Builder, numElems:number) {
+  builder.startVector(1, numElems, 1);
+}
+
+static addStrips(builder:flatbuffers.Builder, stripsOffset:flatbuffers.Offset) {
+  builder.addFieldOffset(2, stripsOffset, 0);
+}
+
+static startStripsVector(builder:flatbuffers.Builder, numElems:number) {
+  builder.startVector(20, numElems, 4);
+}
+
 static endHeld(builder:flatbuffers.Builder):flatbuffers.Offset {
   const offset = builder.endObject();
   return offset;
 }
 
-static createHeld(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset):flatbuffers.Offset {
+static createHeld(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset, facesOffset:flatbuffers.Offset, stripsOffset:flatbuffers.Offset):flatbuffers.Offset {
   Held.startHeld(builder);
   Held.addChunks(builder, chunksOffset);
+  Held.addFaces(builder, facesOffset);
+  Held.addStrips(builder, stripsOffset);
   return Held.endHeld(builder);
 }
 }

@@ -10,6 +10,7 @@ import { Leave } from '../../talus/wire/leave';
 import { Ping } from '../../talus/wire/ping';
 import { Pong } from '../../talus/wire/pong';
 import { Refused } from '../../talus/wire/refused';
+import { Strip } from '../../talus/wire/strip';
 import { View } from '../../talus/wire/view';
 import { ViewAccepted } from '../../talus/wire/view-accepted';
 import { Want } from '../../talus/wire/want';
@@ -31,13 +32,14 @@ export enum Message {
   Credit = 11,
   Ping = 12,
   Pong = 13,
-  Bye = 14
+  Bye = 14,
+  Strip = 15
 }
 
 export function unionToMessage(
   type: Message,
-  accessor: (obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome|null
-): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome|null {
+  accessor: (obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null
+): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
   switch(Message[type]) {
     case 'NONE': return null; 
     case 'Hello': return accessor(new Hello())! as Hello;
@@ -54,15 +56,16 @@ export function unionToMessage(
     case 'Ping': return accessor(new Ping())! as Ping;
     case 'Pong': return accessor(new Pong())! as Pong;
     case 'Bye': return accessor(new Bye())! as Bye;
+    case 'Strip': return accessor(new Strip())! as Strip;
     default: return null;
   }
 }
 
 export function unionListToMessage(
   type: Message, 
-  accessor: (index: number, obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome|null, 
+  accessor: (index: number, obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null, 
   index: number
-): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|View|ViewAccepted|Want|Welcome|null {
+): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
   switch(Message[type]) {
     case 'NONE': return null; 
     case 'Hello': return accessor(index, new Hello())! as Hello;
@@ -79,6 +82,7 @@ export function unionListToMessage(
     case 'Ping': return accessor(index, new Ping())! as Ping;
     case 'Pong': return accessor(index, new Pong())! as Pong;
     case 'Bye': return accessor(index, new Bye())! as Bye;
+    case 'Strip': return accessor(index, new Strip())! as Strip;
     default: return null;
   }
 }

@@ -3,6 +3,7 @@
 import * as flatbuffers from 'flatbuffers';
 
 import { HeldKey } from '../../talus/wire/held-key';
+import { StripKey } from '../../talus/wire/strip-key';
 
 
 /**
@@ -36,8 +37,18 @@ chunksLength():number {
   return offset ? this.bb!.__vector_len(this.bb_pos + offset) : 0;
 }
 
+strips(index: number, obj?:StripKey):StripKey|null {
+  const offset = this.bb!.__offset(this.bb_pos, 6);
+  return offset ? (obj || new StripKey()).__init(this.bb!.__vector(this.bb_pos + offset) + index * 20, this.bb!) : null;
+}
+
+stripsLength():number {
+  const offset = this.bb!.__offset(this.bb_pos, 6);
+  return offset ? this.bb!.__vector_len(this.bb_pos + offset) : 0;
+}
+
 static startWant(builder:flatbuffers.Builder) {
-  builder.startObject(1);
+  builder.startObject(2);
 }
 
 static addChunks(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset) {
@@ -48,14 +59,23 @@ static startChunksVector(builder:flatbuffers.Builder, numElems:number) {
   builder.startVector(24, numElems, 8);
 }
 
+static addStrips(builder:flatbuffers.Builder, stripsOffset:flatbuffers.Offset) {
+  builder.addFieldOffset(1, stripsOffset, 0);
+}
+
+static startStripsVector(builder:flatbuffers.Builder, numElems:number) {
+  builder.startVector(20, numElems, 4);
+}
+
 static endWant(builder:flatbuffers.Builder):flatbuffers.Offset {
   const offset = builder.endObject();
   return offset;
 }
 
-static createWant(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset):flatbuffers.Offset {
+static createWant(builder:flatbuffers.Builder, chunksOffset:flatbuffers.Offset, stripsOffset:flatbuffers.Offset):flatbuffers.Offset {
   Want.startWant(builder);
   Want.addChunks(builder, chunksOffset);
+  Want.addStrips(builder, stripsOffset);
   return Want.endWant(builder);
 }
 }
