@@ -48,6 +48,20 @@ HWY_INLINE Jet<V> chained(const Jet<V>& a, V value, V slope) {
   return {value, hn::Mul(a.x, slope), hn::Mul(a.z, slope)};
 }
 
+/// |a|; the slope at 0 is 0.
+template <class V>
+HWY_INLINE Jet<V> abs(const Jet<V>& a) {
+  const hn::DFromV<V> d;
+  const V sign = hn::IfThenElseZero(hn::Ne(a.v, hn::Zero(d)), hn::CopySign(hn::Set(d, 1.0f), a.v));
+  return chained(a, hn::Abs(a.v), sign);
+}
+
+/// a + (b - a) t.
+template <class V>
+HWY_INLINE Jet<V> mix(const Jet<V>& a, const Jet<V>& b, const Jet<V>& t) {
+  return a + (b - a) * t;
+}
+
 /// 3t^2 - 2t^3 of t = (a - low) / (high - low) clamped to 0..1.
 template <class V>
 HWY_INLINE Jet<V> smoothstep(float low, float high, const Jet<V>& a) {

@@ -98,6 +98,15 @@ HWY_INLINE V exp2_bounded(D d, V x) {
   return hn::Mul(p, hn::BitCast(d, scale));
 }
 
+/// 1 / (1 + e^-x) for any x, clamped to |x| <= 60; relative error below 1e-5 (that of e^-60: 60 log2 e has its last bit
+/// at 2^-18).
+template <class D, class V = VecOf<D>>
+HWY_INLINE V logistic(D d, V x) {
+  const V clamped = hn::Min(hn::Max(x, hn::Set(d, -60.0f)), hn::Set(d, 60.0f));
+  const V power = exp2_bounded(d, hn::Mul(clamped, hn::Set(d, -1.44269504f)));
+  return hn::Div(hn::Set(d, 1.0f), hn::Add(hn::Set(d, 1.0f), power));
+}
+
 /// x^k for x in [0, 1] and k in (0, 8]; 0 where x is below 2^-15. Relative error below 4e-5 (it grows with k log x).
 template <class D, class V = VecOf<D>>
 HWY_INLINE V pow_unit(D d, V x, V k) {

@@ -76,8 +76,8 @@ std::vector<ManifestFault> manifest_faults(const Manifest& manifest) {
   if (!is_power_of_two(parameter(manifest, "chunk.cells"))) {
     faults.push_back({"chunk.cells", "is not a power of two, so that a chunk would not have eight children"});
   }
-  if (parameter(manifest, "macro.sea_floor_m") >= parameter(manifest, "macro.plain_m")) {
-    faults.push_back({"macro.sea_floor_m", "is not below macro.plain_m"});
+  if (parameter(manifest, "macro.sea_floor_m") >= -parameter(manifest, "macro.shelf_depth_m")) {
+    faults.push_back({"macro.sea_floor_m", "is not below the shelf's edge, -macro.shelf_depth_m"});
   }
   return faults;
 }

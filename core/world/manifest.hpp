@@ -20,7 +20,7 @@ inline constexpr std::size_t kWorldNameMax = 32;  ///< bytes of [a-z0-9_-]
 
 struct Manifest {
   std::string name = "default";  ///< 1..kWorldNameMax of [a-z0-9_-]; names the world in URLs
-  std::uint64_t seed = 20261122;
+  std::uint64_t seed = 20261466;
   /// One value per entry of manifest_parameters(), in its order; starts as the defaults.
   std::vector<double> values;
 

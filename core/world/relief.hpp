@@ -1,6 +1,5 @@
-// Height before erosion, and what erosion is to do with it. Private to core/world; pure.
-//
-// The door for plates: whatever decides continents and ranges fills these same arrays.
+// Hills on top of the macro field, what erosion is to do with them, and what lies under them. Private to core/world;
+// pure.
 #pragma once
 
 #include <cstddef>
@@ -17,15 +16,18 @@ struct NoiseArrays {
   float* z;
 };
 
-/// One row's worth of what the relief is made of, and of what it makes.
+/// One row of the macro field and of the hills' noise, and what they make.
 struct ReliefRow {
-  NoiseArrays continent, range, massif, crest, swell, relief;       ///< in
-  float *height, *slope_x, *slope_z, *fade, *strength, *hilliness;  ///< out
+  const float *hilliness, *hilliness_x, *hilliness_z;  ///< 0..1 and its slopes per metre
+  const float *floor, *lift;                           ///< height of the valleys, and from there to the peaks
+  NoiseArrays hills;
+  float *height, *slope_x, *slope_z;  ///< in: the macro field; out: with hills
+  float *fade, *strength;             ///< out
 };
 
-/// Macro height (sea floor, shelf, plain, ranges), hills on top, fade target and erosion strength. `width` columns,
+/// Adds hills as high as hilliness says, and finds the fade target and the strength of erosion. `width` columns,
 /// computed in whole vectors.
-void relief_row(const MacroTerms& macro, const ReliefRow& row, std::size_t width);
+void relief_row(const ReliefTerms& terms, const ReliefRow& row, std::size_t width);
 
 /// Where the rock layers lie: the height of their stack's top and which set of them rules.
 struct StrataPlace {

@@ -75,10 +75,52 @@ ConeControls cones_of(const Reader& m) {
   return c;
 }
 
-MacroTerms macro_of(const Reader& m) {
-  return {m.real("macro.sea_floor_m"),   m.real("macro.plain_m"),          m.real("macro.land_bias"),
-          m.real("macro.range_width"),   m.real("macro.range_height_m"),   m.real("macro.foothill"),
-          m.real("relief.base_m"),       m.real("relief.hill_m"),          m.real("erosion.fade_altitude"),
+PlateControls plates_of(const Reader& m) {
+  PlateControls p;
+  p.size_m = m.number("plates.size_m");
+  p.jitter = m.number("plates.jitter");
+  p.big_share = m.number("plates.big_share");
+  p.cluster_m = m.number("plates.continent_m");
+  p.scatter = m.number("plates.scatter");
+  p.ocean = m.number("plates.ocean");
+  p.group_speed = m.number("plates.group_speed");
+  p.own_speed = m.number("plates.own_speed");
+  p.wiggle = m.number("plates.wiggle");
+  p.wiggle_m = m.number("plates.wiggle_m");
+  p.blend_m = m.number("plates.blend_m");
+  p.seed = m.seed(1);
+  return p;
+}
+
+MacroControls macro_of(const Reader& m) {
+  MacroControls c;
+  c.land_m = m.number("macro.land_m");
+  c.land_range_m = m.number("macro.land_range_m");
+  c.sea_floor_m = m.number("macro.sea_floor_m");
+  c.sea_range_m = m.number("macro.sea_range_m");
+  c.collision_m = m.number("macro.collision_m");
+  c.subduction_m = m.number("macro.subduction_m");
+  c.arc_m = m.number("macro.arc_m");
+  c.ocean_ridge_m = m.number("macro.ocean_ridge_m");
+  c.rift_m = m.number("macro.rift_m");
+  c.old_fault_m = m.number("macro.old_fault_m");
+  c.trench_m = m.number("macro.trench_m");
+  c.range_width = m.number("macro.range_width");
+  c.shelf_m = m.number("macro.shelf_m");
+  c.shelf_depth_m = m.number("macro.shelf_depth_m");
+  c.continental_slope_m = m.number("macro.continental_slope_m");
+  c.uplift_noise = m.number("macro.uplift_noise");
+  c.pass_depth = m.number("macro.pass_depth");
+  c.pass_m = m.number("macro.pass_wavelength_m");
+  c.swell_m = m.number("macro.swell_m");
+  c.coast_m = m.number("macro.coast_m");
+  c.coast_wavelength_m = m.number("macro.coast_wavelength_m");
+  c.seed = m.seed(2);
+  return c;
+}
+
+ReliefTerms relief_of(const Reader& m) {
+  return {m.real("relief.base_m"),       m.real("relief.hill_m"),          m.real("erosion.fade_altitude"),
           m.real("erosion.fade_relief"), m.real("erosion.plain_strength"), m.real("erosion.hill_strength")};
 }
 
@@ -89,15 +131,10 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   WorldFunction::Terms t;
   t.cells = m.whole("chunk.cells");
   t.voxel_m = m.number("chunk.voxel_m");
-  t.macro = macro_of(m);
-  const double range_m = m.number("macro.range_m");
-  t.continent = {m.number("macro.continent_m"), 5, 2.1, 0.45, m.seed(1)};
-  t.range = {range_m, 3, 2.2, 0.30, m.seed(2)};
-  t.massif = {range_m * 2.3, 2, 2.0, 0.4, m.seed(3)};
-  t.crest = {range_m * 0.35, 2, 2.0, 0.5, m.seed(4)};
-  t.swell = {range_m * 0.6, 3, 2.0, 0.5, m.seed(5)};
-  t.relief = {m.number("relief.wavelength_m"), m.whole("relief.octaves"), m.number("relief.lacunarity"),
-              m.number("relief.gain"), m.seed(6)};
+  t.macro = std::make_unique<const MacroField>(plates_of(m), macro_of(m));
+  t.relief = relief_of(m);
+  t.hills = {m.number("relief.wavelength_m"), m.whole("relief.octaves"), m.number("relief.lacunarity"),
+             m.number("relief.gain"), m.seed(6)};
   t.erosion = erosion_of(m);
   t.strata = std::make_unique<const Strata>(
       StrataControls{m.whole("strata.sets"), m.real("strata.ledge"), m.real("strata.ledge_slope"), m.seed(9)});
@@ -119,13 +156,12 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.beach_m = m.real("cover.beach_m");
   t.rock_slope = m.real("cover.rock_slope");
 
-  // What ranges, hills and gullies reach together in practice, rounded outwards; columns are clamped to it, so it is
+  // What plates, hills and gullies reach together in practice, rounded outwards; columns are clamped to it, so it is
   // never wrong.
   const double hills = m.number("relief.base_m") + m.number("relief.hill_m");
   const double gullies = erosion_bound(t.erosion);
-  const glm::dvec2 eroded_m{m.number("macro.sea_floor_m") - 150 - 0.5 * hills - 0.1 * gullies,
-                            m.number("macro.plain_m") + 150 + 1.5 * m.number("macro.range_height_m") + hills + gullies +
-                                cones_bound(t.cones)};
+  const glm::dvec2 eroded_m{t.macro->low_m() - 0.5 * hills - 0.1 * gullies,
+                            t.macro->high_m() + hills + gullies + cones_bound(t.cones)};
   const glm::dvec2 bound_m = coast_bound(t.coast, eroded_m);
   t.low_m = static_cast<float>(bound_m.x);
   t.high_m = static_cast<float>(bound_m.y);

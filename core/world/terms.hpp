@@ -7,15 +7,15 @@
 #include "core/landforms/coast.hpp"
 #include "core/landforms/cones.hpp"
 #include "core/noise/gradient_noise.hpp"
+#include "core/plates/macro_field.hpp"
 #include "core/strata/strata.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
 
-/// Shape of land, sea and ranges; heights in metres.
-struct MacroTerms {
-  float sea_floor_m, plain_m, land_bias, range_width, range_height_m, foothill;
-  float hill_base_m, hill_high_m;  ///< amplitude of relief at hilliness 0, and added at 1
+/// Hills, and how erosion meets them; heights in metres.
+struct ReliefTerms {
+  float hill_base_m, hill_high_m;  ///< amplitude of hills at hilliness 0, and added at 1
   float fade_altitude, fade_relief, plain_strength, hill_strength;
 };
 
@@ -23,8 +23,9 @@ struct WorldFunction::Terms {
   Manifest manifest;
   int cells = 32;
   double voxel_m = 1;
-  MacroTerms macro{};
-  FractalNoise continent, range, massif, crest, swell, relief, micro, fold, tilt, set_choice, district;
+  std::unique_ptr<const MacroField> macro;
+  ReliefTerms relief{};
+  FractalNoise hills, micro, fold, tilt, set_choice, district;
   ErosionControls erosion;
   CoastControls coast;
   ConeControls cones;

@@ -18,11 +18,29 @@
 #include "core/grid/chunk_key.hpp"
 #include "core/grid/column_grid.hpp"
 #include "core/landforms/cones.hpp"
+#include "core/plates/macro_field.hpp"
+#include "core/plates/plate_place.hpp"
 #include "core/strata/material.hpp"
 #include "core/strata/strata.hpp"
 #include "core/world/manifest.hpp"
 
 namespace talus {
+
+/// Working memory of a block: the kernels' intermediate arrays, plates made lately, cones around. It is no part of a
+/// block's value: a copy starts empty, and assigning leaves it as it is.
+struct ColumnWorkspace {
+  std::vector<float> arrays;
+  MacroScratch macro;
+  std::vector<ConeSite> cone_sites;
+  std::vector<Cone> cones;
+
+  ColumnWorkspace() = default;
+  ColumnWorkspace(const ColumnWorkspace& /*other*/) {}
+  ColumnWorkspace& operator=(const ColumnWorkspace& /*other*/) { return *this; }
+  ColumnWorkspace(ColumnWorkspace&&) = default;
+  ColumnWorkspace& operator=(ColumnWorkspace&&) = default;
+  ~ColumnWorkspace() = default;
+};
 
 /// Values of a grid of columns, one array per quantity; column (i, k) is at k * stride + i. `stride` is a multiple of
 /// 16 floats.
@@ -41,9 +59,7 @@ struct ColumnBlock {
   std::vector<float> beach;      ///< 1 on a beach, falling to 0 inland, in deeper water and on other coasts
   float height_low_m = 0;        ///< over the whole block
   float height_high_m = 0;
-  std::vector<float> workspace;  ///< the kernels' intermediate arrays
-  std::vector<ConeSite> cone_sites;
-  std::vector<Cone> cones;
+  ColumnWorkspace workspace;
 };
 
 class WorldFunction {
@@ -62,6 +78,9 @@ class WorldFunction {
 
   /// Fills `out` for `grid`, reusing its memory. Two calls that cover the same lattice point give it the same bits.
   void columns(const ColumnGrid& grid, ColumnBlock& out) const;
+
+  /// The plate under a point, in metres from the origin, and the fault next to it.
+  PlatePlace plate_at(const glm::dvec2& place_m, ColumnWorkspace& workspace) const;
 
   /// What covers the ground at a column whose surface has the unit normal's y component `up`.
   Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;

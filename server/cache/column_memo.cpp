@@ -1,22 +1,10 @@
 #include "server/cache/column_memo.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "core/base/hash.hpp"
 
 namespace talus::server {
-
-namespace {
-
-/// All values of `from`; `to` keeps its own working memory.
-void copy_values(const ColumnBlock& from, ColumnBlock& to) {
-  std::vector<float> workspace = std::move(to.workspace);
-  to = from;
-  to.workspace = std::move(workspace);
-}
-
-}  // namespace
 
 std::size_t ColumnMemo::Hash::operator()(const ColumnName& name) const noexcept {
   const auto pair = [](std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32) | b; };
@@ -33,15 +21,12 @@ bool ColumnMemo::load(const ColumnName& name, ColumnBlock& out) {
     order_.splice(order_.begin(), order_, found->second);
     block = found->second->second;
   }
-  copy_values(*block, out);
+  out = *block;
   return true;
 }
 
-void ColumnMemo::store(const ColumnName& name, ColumnBlock& columns) {
-  auto block = std::make_shared<ColumnBlock>();
-  std::vector<float> workspace = std::move(columns.workspace);
-  *block = columns;
-  columns.workspace = std::move(workspace);
+void ColumnMemo::store(const ColumnName& name, const ColumnBlock& columns) {
+  auto block = std::make_shared<const ColumnBlock>(columns);
   Block forgotten;  // destroyed outside the lock
   const std::lock_guard lock(mutex_);
   if (places_.contains(name)) return;

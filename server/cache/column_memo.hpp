@@ -31,7 +31,7 @@ class ColumnMemo {
   /// Copies the columns of `name` to `out`, reusing its memory. False when they are not known.
   bool load(const ColumnName& name, ColumnBlock& out);
   /// Copies the values of `columns`; its working memory stays with it.
-  void store(const ColumnName& name, ColumnBlock& columns);
+  void store(const ColumnName& name, const ColumnBlock& columns);
   std::size_t blocks() const;
 
  private:

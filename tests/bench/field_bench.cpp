@@ -9,6 +9,7 @@
 #include "core/landforms/coast.hpp"
 #include "core/landforms/cones.hpp"
 #include "core/noise/gradient_noise.hpp"
+#include "core/plates/macro_field.hpp"
 #include "core/world/world_function.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/unit/erosion/filter_reference.hpp"
@@ -133,6 +134,36 @@ void FieldColumnsTile(benchmark::State& state) {
   count_points(state, kPoints);
 }
 
+/// The macro field alone: over a LOD 0 tile (by the column), and where every column is a node (by the node).
+void FieldMacro(benchmark::State& state) {
+  const MacroField field(PlateControls{}, MacroControls{});
+  ColumnGrid grid = kTile;
+  grid.x_voxel = 122'880;
+  grid.z_voxel = 344'064;
+  grid.step_voxel = state.range(0);
+  std::vector<float> arrays(8 * sample_count(grid));
+  const auto part = [&](std::size_t n) { return arrays.data() + n * sample_count(grid); };
+  const MacroArrays out{part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7)};
+  MacroScratch scratch;
+  for (auto _ : state) {
+    field.sample(grid, scratch, out);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
+/// A plate from nothing: its polygon, its neighbours' traits, its faults' curves.
+void FieldPlate(benchmark::State& state) {
+  const PlateBuilder builder(PlateControls{}, MacroControls{});
+  std::vector<Site> sites;
+  for (std::int64_t n = 0; n < 16; ++n) builder.sites().add_sites(n, 2 * n, sites);
+  Plate plate;
+  std::size_t next = 0;
+  for (auto _ : state) builder.build(sites[next++ % sites.size()].key, plate);
+}
+
+BENCHMARK(FieldMacro)->Arg(1)->Arg(32)->Arg(4096)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldPlate)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosionScalar)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldNoise)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);

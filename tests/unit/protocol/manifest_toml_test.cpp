@@ -90,7 +90,7 @@ TEST(ManifestToml, RefusesEveryParameterOutOfRangeOfTheWrongTypeAndMistypedWithL
 }
 
 TEST(ManifestToml, NamesTheSectionsWhenNoneIsNear) {
-  EXPECT_THAT(faults_of("[zzz]\n"), ElementsAre(HasSubstr("known are [chunk] [macro]")));
+  EXPECT_THAT(faults_of("[zzz]\n"), ElementsAre(HasSubstr("known are [chunk] [plates]")));
 }
 
 TEST(ManifestToml, RefusesNumbersThatAreNone) {

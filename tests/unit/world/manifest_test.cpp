@@ -80,7 +80,7 @@ TEST(Manifest, HasOtherBytesForEveryOtherValue) {
 TEST(Manifest, CannotTellItsTwoZeros) {
   Manifest positive;
   Manifest negative;
-  const std::size_t index = parameter_index("macro.land_bias");
+  const std::size_t index = parameter_index("erosion.offset");
   positive.values[index] = 0.0;
   negative.values[index] = -0.0;
   EXPECT_EQ(canonical_bytes(positive), canonical_bytes(negative));
