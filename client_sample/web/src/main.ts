@@ -50,7 +50,7 @@ async function start(): Promise<void> {
       const stream = new URL(`v1/worlds/${encodeURIComponent(manifest.name)}/stream`, base);
       stream.protocol = base.protocol === 'https:' ? 'wss:' : 'ws:';
       hud.showNotice('', '', false);
-      const viewer = new Viewer(canvas, renderer, hud, place, manifest, stream.href, at);
+      const viewer = new Viewer(canvas, renderer, hud, place, manifest, base, stream.href, at);
       window.talus = testDoor(viewer, renderer);
       viewer.start();
       canvas.focus();

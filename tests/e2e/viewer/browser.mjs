@@ -42,7 +42,7 @@ export async function openViewer(t, base, query) {
   page.on('response', (response) => {
     if (response.status() >= 400) faults.push(`answer: ${response.url()} ${response.status()}`);
   });
-  await page.goto(`${base}/?${query}`);
+  await page.goto(`${base}/?${query}`, { timeout: 120_000 });
   return { page, faults, state: () => page.evaluate(() => window.talus?.state() ?? null) };
 }
 

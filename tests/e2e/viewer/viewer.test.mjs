@@ -115,6 +115,38 @@ test('the viewer shows land, follows a flight of 2 km and survives its server', 
   });
 });
 
+test('the map fills with tiles, and a click on it travels there', { timeout: 400_000 }, async (t) => {
+  const server = await start();
+  t.after(() => server.stop('SIGKILL'));
+  const viewer = await openViewer(t, `http://${server.ready.http}`, 'ratio=0.3&samples=0&far=800');
+  await until(viewer, 'the first view is complete', (s) => s.connected && s.complete, completeMs);
+  const { page } = viewer;
+  await page.locator('#under').waitFor({ timeout: completeMs });
+  assert.match(await page.locator('#under').innerText(), /\d m · .+ away/, 'what lies under the pointer is said');
+
+  await page.keyboard.press('m');
+  const mapIs = async (what, wanted) => {
+    const deadline = Date.now() + completeMs;
+    while (!wanted(await page.evaluate(() => window.talus.map()))) {
+      if (Date.now() > deadline) throw new Error(`not in time: ${what}`);
+      await new Promise((resolve) => setTimeout(resolve, 250));
+    }
+  };
+  await mapIs('every tile has come', (map) => map.open && map.missing === 0);
+  await screenshot(viewer, 'map');
+  const middle = await middleOfScreen(page);
+  assert.ok(middle.spread > 4, `the map shows something: ${JSON.stringify(middle)}`);
+
+  await page.locator('#map-closer').click();
+  await mapIs('every tile of the closer view has come', (map) => map.missing === 0);
+  const [x, , z] = (await viewer.state()).at;
+  await page.locator('#map-canvas').click({ position: { x: 300, y: 200 } });
+  const state = await until(viewer, 'the visitor has travelled', (s) => Math.hypot(s.at[0] - x, s.at[2] - z) > 1000, 60_000);
+  assert.ok(state.at[0] < x && state.at[2] < z, `to the north-west: ${state.at}`);
+  assert.deepEqual(await page.evaluate(() => window.talus.map().open), false);
+  assert.deepEqual(viewer.faults.filter((fault) => !fault.includes('ERR_ABORTED')), []);
+});
+
 test('without a server to answer, the page says so and what to do', { timeout: 120_000 }, async (t) => {
   const server = await start();
   t.after(() => server.stop('SIGKILL'));

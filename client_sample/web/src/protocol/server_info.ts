@@ -2,14 +2,29 @@
 
 import type { WorldShape } from './chunk_key';
 
+/// How the tiles of the map route lie; see SPEC.md, "Map tiles".
+export interface MapScheme {
+  tilePixels: number;
+  zoomMax: number;
+  pixelM: number; // metres a pixel at zoom 0; halved by every zoom
+  tileLimit: readonly number[]; // by zoom: coordinates are -limit .. limit - 1
+}
+
+/// What is known of a place, for people.
+export interface GroundFacts {
+  heightM: number;
+  text: string;
+}
+
 export interface WorldManifest {
   name: string;
+  map: MapScheme | null; // of a server without the map route
   shape: WorldShape;
   colours: (string | number)[]; // of materials, in the order of their indices
 }
 
-async function json(url: URL): Promise<unknown> {
-  const response = await fetch(url);
+async function json(url: URL, signal?: AbortSignal): Promise<unknown> {
+  const response = await fetch(url, signal === undefined ? {} : { signal });
   if (!response.ok) throw new Error(`${url.pathname} answered ${response.status}`);
   return response.json();
 }
@@ -34,6 +49,18 @@ export async function chooseWorld(base: URL, asked: string | null): Promise<stri
   return name;
 }
 
+function mapOf(manifest: unknown): MapScheme | null {
+  const map = field(manifest, 'map');
+  const limit = field(map, 'tile_limit');
+  if (!Array.isArray(limit) || !limit.every(Number.isInteger)) return null;
+  return {
+    tilePixels: finite(field(map, 'tile_pixels'), 'map.tile_pixels'),
+    zoomMax: finite(field(map, 'zoom_max'), 'map.zoom_max'),
+    pixelM: finite(field(map, 'pixel_m'), 'map.pixel_m'),
+    tileLimit: limit as number[],
+  };
+}
+
 export async function fetchManifest(base: URL, world: string): Promise<WorldManifest> {
   const manifest = await json(new URL(`v1/worlds/${encodeURIComponent(world)}`, base));
   const range = field(manifest, 'height_range_m');
@@ -42,6 +69,7 @@ export async function fetchManifest(base: URL, world: string): Promise<WorldMani
   const colours = (Array.isArray(materials) ? materials : []).map((material: unknown) => field(material, 'colour'));
   return {
     name: world,
+    map: mapOf(manifest),
     shape: {
       cells: finite(field(manifest, 'chunk_cells'), 'chunk_cells'),
       voxelM: finite(field(manifest, 'voxel_m'), 'voxel_m'),
@@ -63,5 +91,65 @@ export async function fetchSpawn(base: URL, world: string, x: number, z: number)
     return at.length === 3 && at.every(Number.isFinite) ? (at as [number, number, number]) : null;
   } catch {
     return null; // a server without this route still has a world to look at
+  }
+}
+
+export async function fetchMapTile(base: URL, world: string, zoom: number, x: number, y: number, signal: AbortSignal): Promise<ImageBitmap> {
+  const response = await fetch(new URL(`v1/worlds/${encodeURIComponent(world)}/map/${zoom}/${x}/${y}.png`, base), { signal });
+  if (!response.ok) throw new Error(`a map tile answered ${response.status}`);
+  return createImageBitmap(await response.blob());
+}
+
+const kKinds = new Map([
+  ['continental', 'land plate'],
+  ['oceanic', 'sea plate'],
+]);
+
+/// One place of the points route as a line of words; fields a server does not know are left out.
+export function groundFacts(point: unknown, material?: string, heightM?: number): GroundFacts {
+  const height = heightM ?? finite(field(point, 'height_m'), 'height_m');
+  const words = [
+    height < 0 ? `sea ${Math.round(-height)} m deep` : `${Math.round(height)} m`,
+    String(material ?? field(point, 'material') ?? '').replaceAll('_', ' '),
+  ];
+  const layer = field(point, 'layer');
+  if (typeof layer === 'number') words.push(`layer ${layer} of set ${String(field(point, 'layer_set') ?? '?')}`);
+  const kind = field(point, 'plate_kind');
+  const plate = field(point, 'plate');
+  if (plate !== undefined && plate !== null) words.push(`${kKinds.get(String(kind)) ?? `${String(kind)} plate`} ${String(plate)}`);
+  const fault = field(point, 'fault_m');
+  if (typeof fault === 'number') words.push(`fault ${Math.abs(fault) < 1000 ? `${Math.round(Math.abs(fault))} m` : `${(Math.abs(fault) / 1000).toFixed(1)} km`} away`);
+  return { heightM: height, text: words.filter((word) => word !== '').join(' · ') };
+}
+
+async function fetchPoint(base: URL, world: string, x: number, z: number, signal: AbortSignal): Promise<unknown> {
+  const answer = await json(new URL(`v1/worlds/${encodeURIComponent(world)}/points?xz=${x},${z}`, base), signal);
+  const points = field(answer, 'points');
+  return Array.isArray(points) ? (points[0] as unknown) : undefined;
+}
+
+/// What is at (x, z), metres; null when the question was withdrawn or the server does not answer it.
+export async function fetchGround(base: URL, world: string, x: number, z: number, signal: AbortSignal): Promise<GroundFacts | null> {
+  try {
+    return groundFacts(await fetchPoint(base, world, x, z, signal));
+  } catch {
+    return null;
+  }
+}
+
+type Triple = readonly [number, number, number];
+
+/// What a ray meets and what is known of the place; null for sky, and as fetchGround.
+export async function fetchHit(base: URL, world: string, from: Triple, direction: Triple, signal: AbortSignal): Promise<GroundFacts | null> {
+  try {
+    const hit = await json(new URL(`v1/worlds/${encodeURIComponent(world)}/ray?from=${from.join()}&dir=${direction.join()}`, base), signal);
+    const position = field(hit, 'position');
+    if (!Array.isArray(position)) return null;
+    const [x, y, z] = [finite(position[0], 'x'), finite(position[1], 'y'), finite(position[2], 'z')];
+    const facts = groundFacts(await fetchPoint(base, world, x, z, signal), String(field(hit, 'material')), y);
+    const away = finite(field(hit, 'distance_m'), 'distance_m');
+    return { ...facts, text: `${facts.text} · ${away < 1000 ? `${Math.round(away)} m` : `${(away / 1000).toFixed(1)} km`} away` };
+  } catch {
+    return null;
   }
 }

@@ -45,6 +45,7 @@ export class Hud {
   private readonly notice = element('notice');
   private readonly help = element('help');
   private readonly toast = element('toast');
+  private readonly under = element('under');
   private toastTimer: ReturnType<typeof setTimeout> | undefined;
   private firstViewDone = false;
 
@@ -99,6 +100,12 @@ export class Hud {
     this.toast.textContent = text;
     this.toast.classList.add('shown');
     this.toastTimer = setTimeout(() => this.toast.classList.remove('shown'), 2200);
+  }
+
+  /// What lies under the pointer; empty for the sky.
+  showUnder(text: string): void {
+    this.under.textContent = text;
+    this.under.hidden = text === '';
   }
 
   toggleHelp(): void {

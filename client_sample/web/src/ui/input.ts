@@ -13,6 +13,7 @@ export interface InputActions {
   share(): void;
   toggleWire(): void;
   toggleSeams(): void;
+  toggleMap(): void;
   jump(): void;
 }
 
@@ -25,6 +26,8 @@ export class Input {
   private stick: { id: number; x: number; y: number; dx: number; dy: number } | null = null;
   private look: { id: number; x: number; y: number } | null = null;
   private dragging = false;
+  /// Of the mouse over the picture, 0..1 from the lower left; the middle while it is locked or there is none.
+  private readonly pointer = { right: 0.5, up: 0.5 };
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -55,6 +58,15 @@ export class Input {
     return this.down.has('ShiftLeft') || this.down.has('ShiftRight');
   }
 
+  pointed(): { right: number; up: number } {
+    return document.pointerLockElement === this.canvas ? { right: 0.5, up: 0.5 } : { ...this.pointer };
+  }
+
+  /// Keys that are down when another listener takes over would stay down.
+  release(): void {
+    this.down.clear();
+  }
+
   takeTurn(): { yaw: number; pitch: number } {
     const turn = { yaw: this.turnYaw, pitch: this.turnPitch };
     this.turnYaw = 0;
@@ -74,6 +86,7 @@ export class Input {
     if (event.code === 'KeyC') this.actions.share();
     if (event.code === 'KeyG') this.actions.toggleWire();
     if (event.code === 'KeyL') this.actions.toggleSeams();
+    if (event.code === 'KeyM') this.actions.toggleMap();
   }
 
   private wheel(event: WheelEvent): void {
@@ -100,6 +113,8 @@ export class Input {
 
   private pointerMove(event: PointerEvent): void {
     if (event.pointerType === 'mouse') {
+      this.pointer.right = event.clientX / innerWidth;
+      this.pointer.up = 1 - event.clientY / innerHeight;
       if (document.pointerLockElement === this.canvas || this.dragging) this.turn(event.movementX, event.movementY, kMouseTurn);
       return;
     }

@@ -12,6 +12,8 @@ export interface TestDoor {
   /// What is drawn at a point of the screen, both 0..1 from the lower left; null for sky and sea.
   pick(right: number, up: number): { distanceM: number; name: string } | null;
   ground(x: number, z: number): number | null;
+  /// Whether the map is open, and how many tiles of its view have not come (null: it has not been drawn).
+  map(): { open: boolean; missing: number | null };
 }
 
 export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
@@ -40,6 +42,7 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
     },
     overlay: (wire, seams) => renderer.terrain.setOverlay(wire, seams),
     pick: (right, up) => stream.pick(body, renderer.rayThrough(right, up)),
+    map: () => ({ open: viewer.map?.isOpen ?? false, missing: Number.isFinite(viewer.map?.missing) ? viewer.map!.missing : null }),
     ground: (x, z) => viewer.ground(x, z, Infinity)?.heightM ?? null,
   };
 }

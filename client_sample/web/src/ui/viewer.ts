@@ -2,13 +2,15 @@
 
 import type { ConnectionState } from '../protocol/connection';
 import { RefusedReason } from '../protocol/message';
-import type { WorldManifest } from '../protocol/server_info';
+import { fetchGround, fetchHit, fetchMapTile, type WorldManifest } from '../protocol/server_info';
 import { ChunkMesh } from '../render/terrain_layer';
 import type { ViewRenderer } from '../render/view_renderer';
 import { WorldStream } from '../world/world_stream';
 import { Hud } from './hud';
 import { Input } from './input';
+import { Inspector } from './inspector';
 import { type Body, createBody, fly, jump, stayAbove, turn, walk } from './motion';
+import { OverviewMap } from './overview_map';
 import { type Place, queryOfPlace } from './place';
 
 const kFrameMax_s = 0.1; // a longer pause is not caught up with
@@ -16,6 +18,8 @@ const kHudEvery_ms = 200;
 const kSlowFrame_ms = 26; // lower the resolution
 const kFastFrame_ms = 12; // and raise it again
 const kRatioLow = 0.6;
+const kTravelHeight = 140; // metres above the ground or sea one travels to
+const kTravelPitch = -0.14; // radians
 
 /// A straight flight at constant speed, for tests and films.
 interface Flight {
@@ -32,7 +36,9 @@ export class Viewer {
   connection: ConnectionState = { phase: 'connecting', attempt: 1 };
   frame_ms = 16;
   readonly faults: string[] = [];
+  readonly map: OverviewMap | null;
   private readonly input: Input;
+  private readonly inspector: Inspector;
   private pixelRatio: number;
   private frames = 0;
   private lastFrame_ms = performance.now();
@@ -45,6 +51,7 @@ export class Viewer {
     private readonly hud: Hud,
     private readonly place: Place,
     manifest: WorldManifest,
+    base: URL,
     streamUrl: string,
     at: readonly [number, number, number],
   ) {
@@ -60,6 +67,7 @@ export class Viewer {
       share: () => this.share(),
       toggleWire: () => this.toggleOverlay(true, false),
       toggleSeams: () => this.toggleOverlay(false, true),
+      toggleMap: () => this.map?.toggle(),
       jump: () => jump(this.body, this.ground),
     });
     this.stream = new WorldStream<ChunkMesh>(streamUrl, manifest, {
@@ -71,8 +79,35 @@ export class Viewer {
       state: (state) => this.connectionChanged(state),
       fault: (why) => this.faults.push(why),
     });
+    this.inspector = new Inspector(
+      (look, signal) => fetchHit(base, manifest.name, look.from, look.direction, signal),
+      (facts) => hud.showUnder(facts?.text ?? ''),
+    );
+    this.map = this.createMap(manifest, base);
     addEventListener('resize', () => this.resize());
     this.resize();
+  }
+
+  private createMap(manifest: WorldManifest, base: URL): OverviewMap | null {
+    if (manifest.map === null) return null;
+    const { name } = manifest;
+    const ask = (x: number, z: number, signal: AbortSignal) => fetchGround(base, name, x, z, signal);
+    return new OverviewMap(manifest.map, (zoom, x, y, signal) => fetchMapTile(base, name, zoom, x, y, signal), {
+      visitor: () => this.body,
+      ask,
+      opened: () => this.input.release(),
+      travel: (x, z) => {
+        void ask(x, z, new AbortController().signal).then((facts) => {
+          if (facts === null) {
+            this.hud.say('The server does not say how high the ground is there');
+            return;
+          }
+          const away = Math.hypot(x - this.body.x, z - this.body.z);
+          this.goTo([x, Math.max(facts.heightM, 0) + kTravelHeight, z], this.body.yaw, kTravelPitch);
+          this.hud.say(`Travelled ${away < 1000 ? `${Math.round(away)} m` : `${(away / 1000).toFixed(1)} km`}`);
+        });
+      },
+    });
   }
 
   start(): void {
@@ -140,10 +175,13 @@ export class Viewer {
       },
       now_ms,
     );
-    this.renderer.draw(body, now_ms);
+    // The last picture stays under an open map, which then moves as smoothly as it can.
+    if (this.map?.isOpen !== true) this.renderer.draw(body, now_ms);
     if (now_ms - this.lastHud_ms > kHudEvery_ms) {
       this.lastHud_ms = now_ms;
       this.report();
+      this.inspect(now_ms);
+      this.map?.refresh();
       this.adaptResolution();
     }
   }
@@ -216,6 +254,13 @@ export class Viewer {
       roundTrip_ms: stream.connection.roundTrip_ms,
       connection: this.reportConnection(),
     });
+  }
+
+  private inspect(now_ms: number): void {
+    if (document.body.classList.contains('bare') || this.map?.isOpen === true) return;
+    const { right, up } = this.input.pointed();
+    const ray = this.renderer.rayThrough(right, up);
+    this.inspector.update({ from: [this.body.x, this.body.y, this.body.z], direction: [ray.x, ray.y, ray.z] }, now_ms);
   }
 
   private adaptResolution(): void {
