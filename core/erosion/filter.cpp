@@ -6,39 +6,8 @@
 
 #include "core/base/check.hpp"
 #include "core/base/hash.hpp"
+#include "core/erosion/terms.hpp"
 #include "core/grid/axis.hpp"
-
-#ifndef TALUS_EROSION_ROW
-#define TALUS_EROSION_ROW
-namespace talus {
-
-/// Numbers of one octave, in the filter's units.
-struct ErosionOctave {
-  float strength_m;        ///< strength * scale * gain^o
-  float side_slope_per_m;  ///< 2 pi * cell_scale * cells per metre: slope of a wave of 1 m at its steepest
-  float rounding;          ///< rounding_octave^o
-};
-
-/// Controls as floats, and the octaves; one per call of erode.
-struct ErosionTerms {
-  int octaves;
-  std::array<ErosionOctave, kErosionOctavesMax> octave;
-  float gully_weight, detail, rounding_ridge, rounding_crease, rounding_input, onset_input, onset_octave;
-  float ridge_onset_input, ridge_onset_octave, assumed_slope, assumed_blend, cell_scale, shortest, offset;
-};
-
-/// One row of columns: where it lies among each octave's cells, and its arrays.
-struct ErosionRow {
-  const std::array<Axis, kErosionOctavesMax>* x;
-  const std::array<Axis, kErosionOctavesMax>* z;
-  std::size_t k;  ///< row of the grid
-  std::size_t width;
-  const float *in_slope_x, *in_slope_z, *in_fade, *in_strength;
-  float *height, *slope_x, *slope_z, *ridge;
-};
-
-}  // namespace talus
-#endif  // TALUS_EROSION_ROW
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/erosion/filter.cpp"
@@ -47,7 +16,8 @@ struct ErosionRow {
 #include <hwy/highway.h>
 
 #include "core/base/simd_math-inl.hpp"
-#include "core/erosion/phacelle-inl.hpp"
+#include "core/erosion/frequency-inl.hpp"
+#include "core/noise/phacelle-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
@@ -128,8 +98,23 @@ HWY_INLINE void add_gullies(D d, const ErosionTerms& t, const ErosionOctave& oct
   s.ridge_mask = hn::Mul(s.ridge_mask, ease_out(d, hn::Mul(steep, hn::Set(d, t.ridge_onset_octave))));
 }
 
+/// The fade method at lanes i.. of a row.
+template <class D, class V = VecOf<D>>
+HWY_INLINE ErosionResult<V> fade_method(D d, const ErosionTerms& t, const PhacelleRow* rows, std::size_t i, V gx, V gz,
+                                        V fade_target, V strength) {
+  auto s = before_octaves(d, t, gx, gz, fade_target);
+  for (std::size_t o = 0; o < static_cast<std::size_t>(t.octaves); ++o) {
+    add_gullies(d, t, t.octave[o], rows[o], i, strength, s);
+  }
+  return {hn::Add(s.height, hn::Mul(hn::Set(d, t.offset), s.magnitude)), s.slope_x, s.slope_z,
+          hn::Mul(s.ridge_target, hn::Sub(hn::Set(d, 1.0f), s.ridge_mask))};
+}
+
+/// Both methods by their shares. A lane's value is chosen by its own share and strength, so what its neighbours in the
+/// vector make necessary to compute changes no bit of it.
 void erode_row(const ErosionTerms& t, const ErosionRow& r) {
   const hn::ScalableTag<float> d;
+  using V = hn::Vec<decltype(d)>;
   std::array<PhacelleRow, kErosionOctavesMax> rows;
   for (std::size_t o = 0; o < static_cast<std::size_t>(t.octaves); ++o) {
     const Axis& z = (*r.z)[o];
@@ -137,17 +122,32 @@ void erode_row(const ErosionTerms& t, const ErosionRow& r) {
     rows[o].fraction_z = z.fraction[r.k];
     for (std::size_t tap = 0; tap < 4; ++tap) rows[o].hash_z[tap] = z.cell_hash[tap][r.k];
   }
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0f);
   for (std::size_t i = 0; i < r.width; i += hn::Lanes(d)) {
-    auto s = before_octaves(d, t, hn::LoadU(d, r.in_slope_x + i), hn::LoadU(d, r.in_slope_z + i),
-                            hn::LoadU(d, r.in_fade + i));
-    const auto strength = hn::LoadU(d, r.in_strength + i);
-    for (std::size_t o = 0; o < static_cast<std::size_t>(t.octaves); ++o) {
-      add_gullies(d, t, t.octave[o], rows[o], i, strength, s);
+    const V gx = hn::LoadU(d, r.in_slope_x + i);
+    const V gz = hn::LoadU(d, r.in_slope_z + i);
+    const V fade = hn::LoadU(d, r.in_fade + i);
+    const V strength = hn::LoadU(d, r.in_strength + i);
+    const V share = r.in_frequency == nullptr ? zero : hn::LoadU(d, r.in_frequency + i);
+    const auto worn = hn::Gt(strength, zero);
+    const auto some_frequency = hn::And(worn, hn::Gt(share, zero));
+    const auto some_fade = hn::And(worn, hn::Lt(share, one));
+    ErosionResult<V> out{zero, zero, zero, zero};
+    if (!hn::AllFalse(d, some_fade)) out = fade_method(d, t, rows.data(), i, gx, gz, fade, strength);
+    if (!hn::AllFalse(d, some_frequency)) {
+      const auto other = frequency_method(d, t, rows.data(), i, gx, gz, fade, strength);
+      const auto blend = [&](V a, V b) {
+        const V both = hn::IfThenElse(some_fade, mix(a, b, share), b);
+        return hn::IfThenElse(some_frequency, both, a);
+      };
+      out = {blend(out.height, other.height), blend(out.slope_x, other.slope_x), blend(out.slope_z, other.slope_z),
+             blend(out.ridge, other.ridge)};
     }
-    hn::StoreU(hn::Add(s.height, hn::Mul(hn::Set(d, t.offset), s.magnitude)), d, r.height + i);
-    hn::StoreU(s.slope_x, d, r.slope_x + i);
-    hn::StoreU(s.slope_z, d, r.slope_z + i);
-    hn::StoreU(hn::Mul(s.ridge_target, hn::Sub(hn::Set(d, 1.0f), s.ridge_mask)), d, r.ridge + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.height), d, r.height + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.slope_x), d, r.slope_x + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.slope_z), d, r.slope_z + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.ridge), d, r.ridge + i);
   }
 }
 
@@ -160,17 +160,15 @@ HWY_EXPORT(erode_row);
 
 namespace {
 
-ErosionTerms terms_of(const ErosionControls& c) {
+ErosionTerms terms_of(const ErosionControls& c, const std::array<Octave, kErosionOctavesMax>& octaves) {
   const auto f = [](double v) { return static_cast<float>(v); };
   ErosionTerms t{};
   t.octaves = c.octaves;
   double strength_m = c.strength * c.scale_m;
-  double cells_per_m = 1.0 / (c.scale_m * c.cell_scale);
   double rounding = 1;
   for (std::size_t o = 0; o < static_cast<std::size_t>(c.octaves); ++o) {
-    t.octave[o] = {f(strength_m), f(2 * std::numbers::pi * c.cell_scale * cells_per_m), f(rounding)};
+    t.octave[o] = {f(strength_m), f(2 * std::numbers::pi * c.cell_scale * octaves[o].cells_per_m), f(rounding)};
     strength_m *= c.gain;
-    cells_per_m *= c.lacunarity;
     rounding *= c.rounding_octave;
   }
   t.gully_weight = f(c.gully_weight);
@@ -187,20 +185,28 @@ ErosionTerms terms_of(const ErosionControls& c) {
   t.cell_scale = f(c.cell_scale);
   t.shortest = f(1 - c.normalisation);
   t.offset = f(c.offset);
+  t.frequency_slope = f(c.frequency_slope);
+  t.frequency_max = f(c.frequency_max);
+  t.frequency_branch = f(c.frequency_branch);
+  t.frequency_pull = f(c.frequency_pull);
+  t.frequency_valley = f(c.frequency_valley);
   return t;
 }
 
 }  // namespace
 
 double erosion_bound(const ErosionControls& c) {
-  // |faded| <= 1 in every octave: it mixes a clamped target and a weighted cosine.
+  // |faded| <= 1 in every octave: it mixes a clamped target and a weighted cosine. The frequency method cuts at most 2
+  // weights below and pulls by a clamped target.
   double sum = 0;
   double strength_m = c.strength * c.scale_m;
   for (int o = 0; o < c.octaves; ++o) {
     sum += strength_m;
     strength_m *= c.gain;
   }
-  return sum * (1 + (c.offset < 0 ? -c.offset : c.offset));
+  const double fade = 1 + (c.offset < 0 ? -c.offset : c.offset);
+  const double frequency = 2 * c.gully_weight + c.frequency_pull;
+  return sum * (fade > frequency ? fade : frequency);
 }
 
 void erode(const ErosionControls& c, const ColumnGrid& grid, const ErosionInput& in, const ErosionOutput& out) {
@@ -211,22 +217,26 @@ void erode(const ErosionControls& c, const ColumnGrid& grid, const ErosionInput&
   TALUS_CHECK(in.strength.size() >= count && out.height_m.size() >= count && out.slope_x.size() >= count);
   TALUS_CHECK(out.slope_z.size() >= count && out.ridge.size() >= count);
 
-  const ErosionTerms terms = terms_of(c);
+  TALUS_CHECK(in.frequency_share.empty() || in.frequency_share.size() >= count);
+
+  std::array<Octave, kErosionOctavesMax> octaves{};
   std::array<Axis, kErosionOctavesMax> x;
   std::array<Axis, kErosionOctavesMax> z;
   double cells_per_m = 1.0 / (c.scale_m * c.cell_scale);
   for (std::size_t o = 0; o < static_cast<std::size_t>(c.octaves); ++o) {
-    const Octave octave{cells_per_m, mix64(c.seed, o)};
-    split_axis(octave, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, -1, 4, x[o]);
-    split_axis(octave, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, -1, 4, z[o]);
+    octaves[o] = octave_on(grid, cells_per_m, mix64(c.seed, o));
+    split_axis(octaves[o], 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, -1, 4, x[o]);
+    split_axis(octaves[o], 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, -1, 4, z[o]);
     cells_per_m *= c.lacunarity;
   }
+  const ErosionTerms terms = terms_of(c, octaves);
   const std::size_t stride = row_stride(grid);
   const auto row = HWY_DYNAMIC_DISPATCH(erode_row);
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.depth); ++k) {
     const std::size_t at = k * stride;
     row(terms, {&x, &z, k, static_cast<std::size_t>(grid.width), &in.slope_x[at], &in.slope_z[at], &in.fade_target[at],
-                &in.strength[at], &out.height_m[at], &out.slope_x[at], &out.slope_z[at], &out.ridge[at]});
+                &in.strength[at], in.frequency_share.empty() ? nullptr : &in.frequency_share[at], &out.height_m[at],
+                &out.slope_x[at], &out.slope_z[at], &out.ridge[at]});
   }
 }
 

@@ -3,8 +3,8 @@
 // Problem: simulated water needs the whole landscape at once. Answer: stripes that run down the slope, whose sides give
 // the slope for the next, finer stripes, each octave fading where the last has its ridges and creases. Based on: R.
 // Johansen, "Fast and Gorgeous Erosion Filter", 2026 (fade method), after C. John, "Eroded Terrain Noise", 2018, and F.
-// Westin, 2023; written from the article's description. What differs: strength varies per point; metres instead of
-// tiles.
+// Westin, 2023; written from the article's description. What differs: strength and method vary per point; metres
+// instead of tiles. The frequency method is frequency-inl.hpp.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace talus {
 
 inline constexpr int kErosionOctavesMax = 10;
 
-/// Every control of the fade method; the manifest's [erosion] section says what each does.
+/// Every control of both methods; the manifest's [erosion] section says what each does.
 struct ErosionControls {
   double scale_m = 1000;
   int octaves = 7;  ///< 0..kErosionOctavesMax
@@ -38,6 +38,11 @@ struct ErosionControls {
   double cell_scale = 0.7;
   double normalisation = 0.5;
   double offset = 0;
+  double frequency_slope = 2.4;  ///< frequency method: stripes per scale on a slope of 1
+  double frequency_max = 1.6;    ///< stripes per scale that no slope passes, > 0
+  double frequency_branch = 1;   ///< how far the sides of gullies turn finer ones
+  double frequency_pull = 0.8;   ///< share of the strength that parts peaks from valleys; 0 is the original
+  double frequency_valley = 1;   ///< share of the gullies that give out towards valley floors; 0 is the original
   std::uint64_t seed = 0;
 };
 
@@ -47,6 +52,9 @@ struct ErosionInput {
   std::span<const float> slope_z;
   std::span<const float> fade_target;  ///< -1 valley .. +1 peak, clamped by the filter
   std::span<const float> strength;     ///< share of controls.strength at this point, >= 0
+  /// Share of the frequency method, 0..1; the rest is the fade method's. Empty means 0 everywhere. A method costs only
+  /// where some point of a vector has a share of it, and neither does where the strength is 0.
+  std::span<const float> frequency_share = {};
 };
 
 /// What it adds. May not overlap the input.
@@ -57,8 +65,8 @@ struct ErosionOutput {
   std::span<float> ridge;  ///< ridge map, -1 (crease) .. +1 (ridge)
 };
 
-/// Spans hold sample_count(grid) floats. With 0 octaves everything is 0 but the ridge map, which is the masked fade
-/// target.
+/// Spans hold sample_count(grid) floats. Where the strength is 0 everything is 0. With 0 octaves everything is 0 but
+/// the ridge map, which is the masked fade target.
 void erode(const ErosionControls& controls, const ColumnGrid& grid, const ErosionInput& input,
            const ErosionOutput& output);
 

@@ -25,7 +25,13 @@ struct Axis {
 struct Octave {
   double cells_per_m = 0;
   std::uint64_t seed = 0;
+  std::int64_t wrap_voxel = 0;    ///< east-west period, 0 for none
+  std::int64_t cells_around = 0;  ///< cells that make it up
 };
+
+/// The octave that a grid's world has for about `cells_per_m`: where it wraps, a whole number of cells make up the
+/// period, and cells_per_m, of both axes alike, is what that needs.
+Octave octave_on(const ColumnGrid& grid, double cells_per_m, std::uint64_t seed);
 
 /// Fills `count` samples (1..kColumnsMax) and the rest of their last vector from voxel `start` on, `step` voxels apart.
 /// Taps are cells first_tap .. first_tap + taps - 1 relative to the sample's own. `direction` (0 for x, 1 for z) keeps

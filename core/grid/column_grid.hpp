@@ -19,10 +19,15 @@ struct ColumnGrid {
   int width = 0;                ///< columns along x, 1..kColumnsMax
   int depth = 0;                ///< columns along z, 1..kColumnsMax
   double voxel_m = 1.0;         ///< metres per voxel, a power of two: positions in metres are exact
+  std::int64_t wrap_voxel = 0;  ///< east-west period of the world, 0 for none; the world function sets it
 
   friend bool operator==(const ColumnGrid&, const ColumnGrid&) = default;
 };
 
+/// East-west period in metres, 0 for none.
+constexpr double period_m(const ColumnGrid& grid) {
+  return static_cast<double>(grid.wrap_voxel) * grid.voxel_m;
+}
 /// Floats from one row of a grid's arrays to the next.
 constexpr std::size_t row_stride(const ColumnGrid& grid) {
   return (static_cast<std::size_t>(grid.width) + kRowPadding - 1) / kRowPadding * kRowPadding;

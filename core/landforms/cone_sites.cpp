@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/hash.hpp"
+#include "core/grid/wrap.hpp"
 #include "core/landforms/cones.hpp"
 
 namespace talus {
@@ -73,8 +74,10 @@ void grow_cinder_cones(const ConeControls& c, const ConeSite& site, Draw& draw, 
 
 void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<ConeSite>& out) {
   out.clear();
+  const double cell_m = fitted_cell_m(c.cell_m, period_m(grid));
+  const std::int64_t around = cells_around(c.cell_m, period_m(grid));
   const double reach_m = kReach * c.cell_m;
-  const auto cell = [&](double at_m) { return static_cast<std::int64_t>(std::floor(at_m / c.cell_m)); };
+  const auto cell = [&](double at_m) { return static_cast<std::int64_t>(std::floor(at_m / cell_m)); };
   const auto at = [&](std::int64_t voxel, int steps) {
     return static_cast<double>(voxel + steps * grid.step_voxel) * grid.voxel_m;
   };
@@ -82,15 +85,20 @@ void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<
   const double x1 = at(grid.x_voxel, grid.width - 1);
   const double z0 = at(grid.z_voxel, 0);
   const double z1 = at(grid.z_voxel, grid.depth - 1);
-  // A cell's middle lies half a cell from its corner, and a cone reaches one cell from there.
-  for (std::int64_t cz = cell(z0 - 0.5 * c.cell_m) - 1; cz <= cell(z1 + 0.5 * c.cell_m); ++cz) {
-    for (std::int64_t cx = cell(x0 - 0.5 * c.cell_m) - 1; cx <= cell(x1 + 0.5 * c.cell_m); ++cx) {
+  // A cell's middle lies half a cell from its corner, and a cone reaches one cell from there; a fitted cell can be a
+  // little smaller than that.
+  const int more = around == 0 ? 0 : 1;
+  for (std::int64_t cz = cell(z0 - 0.5 * cell_m) - 1 - more; cz <= cell(z1 + 0.5 * cell_m) + more; ++cz) {
+    for (std::int64_t cx = cell(x0 - 0.5 * cell_m) - 1 - more; cx <= cell(x1 + 0.5 * cell_m) + more; ++cx) {
       ConeSite site;
-      site.hash = mix64(mix64(c.seed, static_cast<std::uint64_t>(cx)), static_cast<std::uint64_t>(cz));
+      // In a world that wraps a site is that of its cell in the first turn, whole periods away.
+      const std::int64_t x_cell = wrapped(cx, around);
+      const double turns_m = around == 0 ? 0.0 : static_cast<double>((cx - x_cell) / around) * period_m(grid);
+      site.hash = mix64(mix64(c.seed, static_cast<std::uint64_t>(x_cell)), static_cast<std::uint64_t>(cz));
       Draw draw(site.hash);
       if (draw.unit() >= std::max(c.land_share, c.sea_share)) continue;
-      site.x_m = snapped((static_cast<double>(cx) + 0.5 + draw.between(-kJitter, kJitter)) * c.cell_m);
-      site.z_m = snapped((static_cast<double>(cz) + 0.5 + draw.between(-kJitter, kJitter)) * c.cell_m);
+      site.x_m = snapped((static_cast<double>(x_cell) + 0.5 + draw.between(-kJitter, kJitter)) * cell_m) + turns_m;
+      site.z_m = snapped((static_cast<double>(cz) + 0.5 + draw.between(-kJitter, kJitter)) * cell_m);
       const bool is_near =
           site.x_m > x0 - reach_m && site.x_m < x1 + reach_m && site.z_m > z0 - reach_m && site.z_m < z1 + reach_m;
       if (is_near) out.push_back(site);

@@ -50,7 +50,8 @@ MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
   const float height_m = y_m_ + (static_cast<float>(position.y) / static_cast<float>(kStepsPerCell)) * step_m_;
   const glm::i64vec2 column_voxel{columns_.grid.x_voxel + (e.x + 1) * columns_.grid.step_voxel,
                                   columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
-  Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel);
+  Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel,
+                                   columns_.districts_at(from_column));
 
   if (material == Material::kRock) {
     const float stack_m =

@@ -143,10 +143,10 @@ void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<
   double amplitude = static_cast<double>(kNoiseScale) * 0x1p-15;
   double cells_per_m = 1.0 / noise.wavelength_m;
   for (int o = 0; o < noise.octaves; ++o) {
-    const std::uint64_t seed = mix64(noise.seed, static_cast<std::uint64_t>(o));
-    const double cells_per_m_z = cells_per_m / noise.stretch_z;
-    split_axis({cells_per_m, seed}, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, 0, 2, x);
-    split_axis({cells_per_m_z, seed}, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, 0, 2, z);
+    const Octave octave = octave_on(grid, cells_per_m, mix64(noise.seed, static_cast<std::uint64_t>(o)));
+    const double cells_per_m_z = octave.cells_per_m / noise.stretch_z;
+    split_axis(octave, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, 0, 2, x);
+    split_axis({cells_per_m_z, octave.seed}, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, 0, 2, z);
     const auto add = HWY_DYNAMIC_DISPATCH(add_octave);
     for (int k = 0; k < grid.depth; ++k) {
       const auto at = static_cast<std::size_t>(k);
@@ -154,7 +154,7 @@ void fractal_noise(const FractalNoise& noise, const ColumnGrid& grid, std::span<
                           z.fraction[at],
                           {z.cell_hash[0][at], z.cell_hash[1][at]},
                           static_cast<float>(amplitude),
-                          static_cast<float>(amplitude * cells_per_m),
+                          static_cast<float>(amplitude * octave.cells_per_m),
                           static_cast<float>(amplitude * cells_per_m_z)};
       add(row, static_cast<std::size_t>(grid.width), &value[at * stride], &slope_x[at * stride], &slope_z[at * stride]);
     }

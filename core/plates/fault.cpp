@@ -24,9 +24,11 @@ double grown(double base, double strength) {
 }
 
 /// 0..1, one for each pair of plates.
-double pair_chance(std::uint64_t seed, const SiteKey& a, const SiteKey& b) {
-  const auto& [low, high] = std::minmax(a, b);
-  std::uint64_t hash = mix64(seed, 0xFA017);
+double pair_chance(const PlateControls& plates, const SiteKey& a, const SiteKey& b) {
+  const auto& [first, second] = std::minmax(a, b);
+  const SiteKey low = first_turn(plates, first);
+  const SiteKey high = first_turn(plates, second);
+  std::uint64_t hash = mix64(plates.seed, 0xFA017);
   for (const std::int64_t v : {low.x, low.z, high.x, high.z}) hash = mix64(hash, static_cast<std::uint64_t>(v));
   return static_cast<double>(hash >> 11) * 0x1p-53;
 }
@@ -61,7 +63,7 @@ FaultFeatures features_of(const PlateControls& plates, const MacroControls& macr
   const double closing = (static_cast<double>(towards.x) * x + static_cast<double>(towards.y) * z) / distance_m;
   const double strength = std::clamp((std::abs(closing) - kRestSpeed) / kFullSpeed, 0.0, 1.0);
   const double scale = std::min(1.0, 0.5 * distance_m / kFullWidth_m);
-  const double chance = pair_chance(plates.seed, front.site.key, back.site.key);
+  const double chance = pair_chance(plates, front.site.key, back.site.key);
 
   FaultFeatures f;
   f.kind = class_of(is_land(front), is_land(back), closing);

@@ -114,7 +114,7 @@ void MacroField::sample(const ColumnGrid& grid, MacroScratch& scratch, const Mac
     return sample_apart(grid, scratch, out);
   const NodeAxis x = node_axis(grid.x_voxel, grid.step_voxel, grid.width);
   const NodeAxis z = node_axis(grid.z_voxel, grid.step_voxel, grid.depth);
-  const ColumnGrid nodes{x.first_voxel, z.first_voxel, x.step_voxel, x.nodes, z.nodes, grid.voxel_m};
+  const ColumnGrid nodes{x.first_voxel, z.first_voxel, x.step_voxel, x.nodes, z.nodes, grid.voxel_m, grid.wrap_voxel};
   const std::size_t count = sample_count(nodes);
   scratch.arrays.resize(std::max(scratch.arrays.size(), count * kArrays));
   float* next = scratch.arrays.data();
@@ -156,8 +156,9 @@ void MacroField::sample_apart(const ColumnGrid& grid, MacroScratch& scratch, con
   for (int k = 0; k < grid.depth; ++k) {
     for (int i = 0; i < grid.width; ++i) {
       const std::size_t at = static_cast<std::size_t>(k) * row_stride(grid) + static_cast<std::size_t>(i);
-      sample({grid.x_voxel + i * grid.step_voxel, grid.z_voxel + k * grid.step_voxel, 1, 1, 1, grid.voxel_m}, scratch,
-             single);
+      sample({grid.x_voxel + i * grid.step_voxel, grid.z_voxel + k * grid.step_voxel, 1, 1, 1, grid.voxel_m,
+              grid.wrap_voxel},
+             scratch, single);
       out.height[at] = *single.height;
       out.height_x[at] = *single.height_x;
       out.height_z[at] = *single.height_z;

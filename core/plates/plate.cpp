@@ -117,8 +117,9 @@ void add_curve(const PlateControls& controls, PlateFault& fault, std::vector<flo
   fault.curve.broad = curves.size() + count;
   curves.resize(curves.size() + 2 * count);
   std::uint64_t seed = mix64(controls.seed, 0xC0A57);
-  for (const std::int64_t v : {fault.front.x, fault.front.z, fault.back.x, fault.back.z})
-    seed = mix64(seed, static_cast<std::uint64_t>(v));
+  const SiteKey front = first_turn(controls, fault.front);
+  const SiteKey back = first_turn(controls, fault.back);
+  for (const std::int64_t v : {front.x, front.z, back.x, back.z}) seed = mix64(seed, static_cast<std::uint64_t>(v));
   float* full = &curves[fault.curve.full];
   float* broad = &curves[fault.curve.broad];
   fault_curve({fault.curve.samples, fault.length_m, fault.foot_t, fault.half_m, real(controls.wiggle),
@@ -130,7 +131,7 @@ void add_curve(const PlateControls& controls, PlateFault& fault, std::vector<flo
 }
 
 std::uint64_t fingerprint_of(const PlateControls& p, const MacroControls& m) {
-  std::uint64_t hash = mix64(p.seed, m.seed);
+  std::uint64_t hash = mix64(mix64(p.seed, m.seed), static_cast<std::uint64_t>(p.wrap_m));
   for (const double v : {p.size_m,        p.jitter,      p.big_share,   p.cluster_m,   p.scatter,      p.ocean,
                          p.group_speed,   p.own_speed,   p.wiggle,      p.wiggle_m,    p.blend_m,      m.land_m,
                          m.land_range_m,  m.sea_floor_m, m.sea_range_m, m.collision_m, m.subduction_m, m.arc_m,

@@ -9,6 +9,7 @@ namespace talus {
 /// Where plates lie, how they move, and the lines between them.
 struct PlateControls {
   double size_m = 16384;     ///< edge of a macro cell, whole metres
+  std::int64_t wrap_m = 0;   ///< east-west period, a whole number of 4 size_m; 0 for none
   double jitter = 0.86;      ///< 0..0.9 of the cell
   double big_share = 0.3;    ///< of the squares of 2x2 macro cells that hold one plate instead of four
   double cluster_m = 92000;  ///< wavelength of continents

@@ -6,6 +6,7 @@
 
 #include "core/base/hash.hpp"
 #include "core/grid/floor_div.hpp"
+#include "core/grid/wrap.hpp"
 
 namespace talus {
 namespace {
@@ -38,15 +39,19 @@ glm::vec2 direction(std::uint64_t hash) {
   return {static_cast<float>(x / length), static_cast<float>(z / length)};
 }
 
-float noise_at(const FractalNoise& noise, const glm::i64vec2& at_m) {
+float noise_at(const FractalNoise& noise, const glm::i64vec2& at_m, std::int64_t wrap_m) {
   std::array<float, kRowPadding> v;
   std::array<float, kRowPadding> x;
   std::array<float, kRowPadding> z;
-  fractal_noise(noise, {at_m.x, at_m.y, 1, 1, 1, 1.0}, v, x, z);
+  fractal_noise(noise, {at_m.x, at_m.y, 1, 1, 1, 1.0, wrap_m}, v, x, z);
   return v[0];
 }
 
 }  // namespace
+
+SiteKey first_turn(const PlateControls& controls, const SiteKey& key) {
+  return {wrapped(key.x, controls.wrap_m / static_cast<std::int64_t>(controls.size_m)), key.z};
+}
 
 PlateSites::PlateSites(const PlateControls& plates, const MacroControls& macro)
     : controls_(plates),
@@ -60,11 +65,12 @@ std::int64_t PlateSites::square_of(std::int64_t at_m) const {
 }
 
 bool PlateSites::is_big(std::int64_t square_x, std::int64_t square_z) const {
-  return unit(hash_of(controls_.seed, kSquare, square_x, square_z), 0) < controls_.big_share;
+  return unit(hash_of(controls_.seed, kSquare, wrapped(square_x, controls_.wrap_m / square_m()), square_z), 0) <
+         controls_.big_share;
 }
 
 Site PlateSites::place(const SiteKey& key, bool big) const {
-  const std::uint64_t hash = hash_of(controls_.seed, kPlace, key.x, key.z);
+  const std::uint64_t hash = hash_of(controls_.seed, kPlace, first_turn(controls_, key).x, key.z);
   const double edge_m = static_cast<double>(big ? square_m() : cell_m_);
   const double jitter = big ? 0.5 * controls_.jitter : controls_.jitter;
   const auto along = [&](std::uint64_t n) {
@@ -96,7 +102,7 @@ glm::vec2 PlateSites::group_velocity(const Site& site) const {
   for (std::int64_t dz = -1; dz <= 1; ++dz) {
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
       const glm::i64vec2 group = here + glm::i64vec2{dx, dz};
-      const std::uint64_t hash = hash_of(controls_.seed, kGroup, group.x, group.y);
+      const std::uint64_t hash = hash_of(controls_.seed, kGroup, wrapped(group.x, controls_.wrap_m / edge_m), group.y);
       const glm::i64vec2 corner = group * edge_m - site.at_m;
       const double x = static_cast<double>(corner.x) + static_cast<double>(edge_m) * (0.5 + jittered(hash, 0, 0.8));
       const double z = static_cast<double>(corner.y) + static_cast<double>(edge_m) * (0.5 + jittered(hash, 1, 0.8));
@@ -111,10 +117,10 @@ glm::vec2 PlateSites::group_velocity(const Site& site) const {
 }
 
 PlateTraits PlateSites::traits(const Site& site) const {
-  const std::uint64_t hash = hash_of(controls_.seed, kTraits, site.key.x, site.key.z);
+  const std::uint64_t hash = hash_of(controls_.seed, kTraits, first_turn(controls_, site.key).x, site.key.z);
   // Clustered, or land would be confetti: a slow noise decides, chance scatters.
-  const double q =
-      0.5 + 0.62 * static_cast<double>(noise_at(continent_, site.at_m)) + controls_.scatter * (unit(hash, 0) - 0.5);
+  const double q = 0.5 + 0.62 * static_cast<double>(noise_at(continent_, site.at_m, controls_.wrap_m)) +
+                   controls_.scatter * (unit(hash, 0) - 0.5);
   PlateTraits traits;
   traits.kind = q < controls_.ocean ? PlateKind::kOceanic : PlateKind::kContinental;
   // Young plates are oceanic, old ones continental, and within its kind a plate sinks as it ages.
@@ -124,7 +130,7 @@ PlateTraits PlateSites::traits(const Site& site) const {
     traits.age = static_cast<float>(controls_.ocean + (1 - controls_.ocean) * u);
     traits.elevation_m = static_cast<float>(macro_.land_m + macro_.land_range_m * (heart - u));
   } else {
-    const double slow = static_cast<double>(noise_at(sea_floor_, site.at_m));
+    const double slow = static_cast<double>(noise_at(sea_floor_, site.at_m, controls_.wrap_m));
     traits.age = static_cast<float>(controls_.ocean * u);
     traits.elevation_m = static_cast<float>(macro_.sea_floor_m + macro_.sea_range_m * (slow - 0.8 * (u - 0.5)));
   }

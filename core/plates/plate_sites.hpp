@@ -45,6 +45,10 @@ struct PlateTraits {
 /// at most 0.95 * sqrt(2) = 1.344 away.
 inline constexpr double kSiteReach = 2.06;
 
+/// In a world that wraps, the key that the site of `key` has in the first turn around it: what chance is drawn from.
+/// Orders and distances are those of the keys themselves, which a whole turn moves alike.
+SiteKey first_turn(const PlateControls& controls, const SiteKey& key);
+
 class PlateSites {
  public:
   PlateSites(const PlateControls& plates, const MacroControls& macro);

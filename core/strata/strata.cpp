@@ -31,6 +31,7 @@ struct StrataTables {
 #include <hwy/highway.h>
 
 #include "core/base/jet-inl.hpp"
+#include "core/strata/set_blend-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
@@ -43,10 +44,8 @@ HWY_INLINE void look_up(D d, const float* table, V depth, V choice, V& value, V&
   const V slices = hn::Mul(hn::Min(hn::Max(depth, hn::Zero(d)), hn::Set(d, kStackDepth)), hn::Set(d, kSlicesPerMetre));
   const V whole = hn::Floor(slices);
   const V f = hn::Sub(slices, whole);
-  const V set = hn::Floor(choice);
-  const V t = saturate(hn::Mul(hn::Sub(hn::Sub(choice, set), hn::Set(d, 0.35f)), hn::Set(d, 1.0f / 0.3f)));
-  const V blend = hn::Mul(hn::Mul(t, t), hn::Sub(hn::Set(d, 3.0f), hn::Add(t, t)));
-  const auto at = hn::Add(hn::Mul(hn::ConvertTo(di, set), hn::Set(di, kSlicesPerSet)), hn::ConvertTo(di, whole));
+  const SetBlend<V> sets = set_blend(d, choice);
+  const auto at = hn::Add(hn::Mul(sets.set, hn::Set(di, kSlicesPerSet)), hn::ConvertTo(di, whole));
   const auto step = [&](int offset, V& low, V& rise) {
     const auto here = hn::Add(at, hn::Set(di, offset));
     low = hn::GatherIndex(d, table, here);
@@ -55,8 +54,8 @@ HWY_INLINE void look_up(D d, const float* table, V depth, V choice, V& value, V&
   V low_a, rise_a, low_b, rise_b;
   step(0, low_a, rise_a);
   step(kSlicesPerSet, low_b, rise_b);
-  const V rise = mix(rise_a, rise_b, blend);
-  value = hn::Add(mix(low_a, low_b, blend), hn::Mul(f, rise));
+  const V rise = mix(rise_a, rise_b, sets.share);
+  value = hn::Add(mix(low_a, low_b, sets.share), hn::Mul(f, rise));
   slope = hn::Mul(rise, hn::Set(d, kSlicesPerMetre));
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -43,6 +44,7 @@ class Strata {
   explicit Strata(const StrataControls& controls);
 
   int sets() const { return static_cast<int>(sets_.size()); }
+  std::span<const LayerSet> all_sets() const { return sets_; }
   const LayerSet& set(int index) const { return sets_[static_cast<std::size_t>(index)]; }
 
   /// Mean hardness within 45 m above and below each height: continuous and slow, fit to scale erosion.

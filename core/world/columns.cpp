@@ -1,32 +1,17 @@
-// The stages that make columns, in order: plates and hills, cones, rock layers, erosion, ledges, cinders, coast,
-// roughness.
+// The stages that make columns, in order: plates and hills, cones, districts, rock layers, erosion, rills, ledges,
+// dunes, cinders, coast, roughness.
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "core/world/arrays.hpp"
+#include "core/world/district_stages.hpp"
 #include "core/world/relief.hpp"
 #include "core/world/terms.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
 namespace {
-
-/// Cuts one vector of floats into the arrays of a grid. Sized once, so arrays stay where they are.
-class Arrays {
- public:
-  Arrays(std::vector<float>& memory, std::size_t count, std::size_t arrays) : count_(count) {
-    memory.resize(std::max(memory.size(), count * arrays));
-    next_ = memory.data();
-  }
-  /// The same memory from its next array on, for a smaller grid.
-  Arrays(const Arrays& other, std::size_t count) : count_(count), next_(other.next_) {}
-  float* take(std::size_t arrays = 1) { return std::exchange(next_, next_ + arrays * count_); }
-  std::span<float> span(float* array, std::size_t arrays = 1) const { return {array, arrays * count_}; }
-
- private:
-  std::size_t count_;
-  float* next_;
-};
 
 NoiseArrays sample(const FractalNoise& noise, const ColumnGrid& grid, Arrays& arrays) {
   const NoiseArrays out{arrays.take(), arrays.take(), arrays.take()};
@@ -67,7 +52,7 @@ void cone_stage(const WorldFunction::Terms& t, const ColumnGrid& grid, Arrays ar
   workspace.cones.clear();
   for (const ConeSite& site : workspace.cone_sites) {
     const auto voxel = [&](double at_m) { return static_cast<std::int64_t>(at_m / grid.voxel_m); };
-    const ColumnGrid centre{voxel(site.x_m), voxel(site.z_m), 1, 1, 1, grid.voxel_m};
+    const ColumnGrid centre{voxel(site.x_m), voxel(site.z_m), 1, 1, 1, grid.voxel_m, grid.wrap_voxel};
     alignas(64) std::array<float, 6 * kRowPadding> ground{};
     float* const at = ground.data();
     relief_stage(
@@ -82,7 +67,7 @@ void cone_stage(const WorldFunction::Terms& t, const ColumnGrid& grid, Arrays ar
 }
 
 /// Arrays that live from stage to stage, and the most that one stage needs: the coast's.
-constexpr std::size_t kKeptArrays = 2 + 2 + 1 + 3;
+constexpr std::size_t kKeptArrays = 2 + 2 + 1 + 3 + kDistrictStageArrays;
 constexpr std::size_t kWorkspaceArrays = kKeptArrays + kCoastArrays;
 
 /// One call of WorldFunction::columns. Each stage reads what those before it left, and takes its own arrays from the
@@ -96,7 +81,8 @@ class ColumnStages {
         stride_(row_stride(grid)),
         count_(sample_count(grid)),
         width_(static_cast<std::size_t>(grid.width)),
-        free_(out.workspace.arrays, count_, kWorkspaceArrays) {
+        free_(out.workspace.arrays, count_, kWorkspaceArrays),
+        districts_(free_, grid, out) {
     out.grid = grid;
     out.stride = stride_;
     for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness,
@@ -114,6 +100,7 @@ class ColumnStages {
     const ReliefArrays relief{out_.height_m.data(), relief_x_, relief_z_, fade_, strength_, out_.hilliness.data()};
     relief_stage(t_, grid_, free_, out_.workspace.macro, relief);
     cone_stage(t_, grid_, free_, out_.workspace, relief);
+    raise_landforms(t_, ground(), out_.hilliness, free_.span(fade_), grid_, free_, districts_);
   }
 
   /// Where the rock layers lie, and how they withstand erosion.
@@ -124,6 +111,9 @@ class ColumnStages {
     const NoiseArrays set_choice = sample(t_.set_choice, grid_, arrays);
     for (std::size_t at = 0; at < count_; at += stride_) {
       strata_place_row(t_, {fold.v + at, tilt.v + at, set_choice.v + at, &out_.stack_m[at], &out_.choice[at]}, width_);
+    }
+    lay_tables(t_, districts_, ground(), out_);
+    for (std::size_t at = 0; at < count_; at += stride_) {
       t_.strata->hardness_row(strata_row(at), &out_.height_m[at], hardness_ + at);
       resist_row(t_.resistance, hardness_ + at, strength_ + at, width_);
     }
@@ -135,9 +125,15 @@ class ColumnStages {
     float* change = arrays.take();
     float* change_x = arrays.take();
     float* change_z = arrays.take();
+    std::span<float> shares;
+    if (t_.frequency_share > 0 || districts_.weights.has(District::kGlacial)) shares = arrays.span(arrays.take());
+    share_erosion(t_.frequency_share, districts_, arrays.span(strength_), shares);
+    const GroundArrays changes{arrays.span(change), arrays.span(change_x), arrays.span(change_z)};
     erode(t_.erosion, grid_,
-          {arrays.span(relief_x_), arrays.span(relief_z_), arrays.span(fade_), arrays.span(strength_)},
-          {arrays.span(change), arrays.span(change_x), arrays.span(change_z), out_.ridge});
+          {arrays.span(relief_x_), arrays.span(relief_z_), arrays.span(fade_), arrays.span(strength_), shares},
+          {changes.height_m, changes.slope_x, changes.slope_z, out_.ridge});
+    add_rills(t_, districts_, ground(), changes, arrays, out_);
+    show_ledges(districts_, arrays.span(district_));
     for (std::size_t at = 0; at < count_; at += stride_) {
       float* height = &out_.height_m[at];
       float* slope_x = &out_.slope_x[at];
@@ -147,6 +143,10 @@ class ColumnStages {
       add_change_row({change + at, change_x + at, change_z + at, height, slope_x, slope_z}, width_);
       t_.strata->ledge_row(strata_row(at), relief_x_ + at, relief_z_ + at, height, slope_x, slope_z);
     }
+    if (districts_.weights.has(District::kDunes)) {
+      dunes(t_.dunes, grid_, districts_.weights[District::kDunes], {out_.height_m, out_.slope_x, out_.slope_z},
+            free_.borrow(kDuneArrays));
+    }
     Arrays again = free_;
     heap_cinders(t_.cones, out_.workspace.cones, grid_, {out_.height_m, out_.slope_x, out_.slope_z},
                  again.span(again.take(kConeArrays), kConeArrays));
@@ -155,7 +155,7 @@ class ColumnStages {
   /// Cliffs and beaches.
   void shore() {
     Arrays arrays = free_;
-    coast(t_.coast, grid_, {arrays.span(relief_x_), arrays.span(relief_z_), out_.hilliness},
+    coast(t_.coast, grid_, {districts_.shore_x, districts_.shore_z, out_.hilliness},
           {out_.height_m, out_.slope_x, out_.slope_z, out_.cliff_m, out_.beach},
           arrays.span(arrays.take(kCoastArrays), kCoastArrays));
   }
@@ -179,6 +179,7 @@ class ColumnStages {
   }
 
  private:
+  GroundArrays ground() { return {out_.height_m, free_.span(relief_x_), free_.span(relief_z_)}; }
   StrataRow strata_row(std::size_t at) const { return {&out_.stack_m[at], &out_.choice[at], district_ + at, width_}; }
 
   const WorldFunction::Terms& t_;
@@ -186,13 +187,16 @@ class ColumnStages {
   ColumnBlock& out_;
   std::size_t stride_, count_, width_;
   Arrays free_;  ///< what no stage keeps
+  DistrictStages districts_;
   float *relief_x_ = nullptr, *relief_z_ = nullptr, *fade_ = nullptr, *strength_ = nullptr, *hardness_ = nullptr;
-  const float* district_ = nullptr;
+  float* district_ = nullptr;  ///< noise of the ledges
 };
 
 }  // namespace
 
-void WorldFunction::columns(const ColumnGrid& grid, ColumnBlock& out) const {
+void WorldFunction::columns(const ColumnGrid& asked, ColumnBlock& out) const {
+  ColumnGrid grid = asked;
+  grid.wrap_voxel = terms_->wrap_voxel;
   ColumnStages stages(*terms_, grid, out);
   stages.relief();
   stages.strata();

@@ -6,10 +6,14 @@
 #include <cmath>
 
 #include "core/base/check.hpp"
+#include "core/grid/chunk_key.hpp"
 #include "core/world/manifest_table.hpp"
 
 namespace talus {
 namespace {
+
+/// Every period is a multiple of it, so that cells whose edge is a power of two up to it fit without change.
+constexpr double kWrapUnit_m = 131072;
 
 void put(std::vector<std::byte>& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out.push_back(static_cast<std::byte>(value >> (8 * i)));
@@ -75,6 +79,15 @@ std::vector<ManifestFault> manifest_faults(const Manifest& manifest) {
   }
   if (!is_power_of_two(parameter(manifest, "chunk.cells"))) {
     faults.push_back({"chunk.cells", "is not a power of two, so that a chunk would not have eight children"});
+  }
+  const double wrap_m = parameter(manifest, "world.wrap_m");
+  const double coarsest_chunk_m =
+      parameter(manifest, "chunk.cells") * parameter(manifest, "chunk.voxel_m") * (1 << kLodMax);
+  if (std::fmod(wrap_m, std::max(coarsest_chunk_m, kWrapUnit_m)) != 0) {
+    faults.push_back({"world.wrap_m", "is not a whole number of 131072 m and of chunks of the coarsest LOD"});
+  }
+  if (std::fmod(wrap_m, 4 * parameter(manifest, "plates.size_m")) != 0) {
+    faults.push_back({"world.wrap_m", "is not a whole number of groups of plates, 4 * plates.size_m"});
   }
   if (parameter(manifest, "macro.sea_floor_m") >= -parameter(manifest, "macro.shelf_depth_m")) {
     faults.push_back({"macro.sea_floor_m", "is not below the shelf's edge, -macro.shelf_depth_m"});

@@ -4,8 +4,6 @@
 #define TALUS_RELIEF_CONSTANTS
 namespace talus {
 
-/// Height of the top of every stack before it is bent, in metres: above any summit.
-inline constexpr float kStackTop = 3600.0f;
 /// Hardness that leaves erosion as strong as the manifest says.
 inline constexpr float kMeanHardness = 0.55f;
 

@@ -9,6 +9,9 @@
 
 namespace talus {
 
+/// Height of the top of every stack before it is bent, in metres: above any summit.
+inline constexpr float kStackTop = 3600.0f;
+
 /// A noise over a grid of columns: value and slope.
 struct NoiseArrays {
   float* v;

@@ -43,6 +43,11 @@ ErosionControls erosion_of(const Reader& m) {
   c.cell_scale = m.number("erosion.cell_scale");
   c.normalisation = m.number("erosion.normalisation");
   c.offset = m.number("erosion.offset");
+  c.frequency_slope = m.number("erosion.frequency_slope");
+  c.frequency_max = m.number("erosion.frequency_max");
+  c.frequency_branch = m.number("erosion.frequency_branch");
+  c.frequency_pull = m.number("erosion.frequency_pull");
+  c.frequency_valley = m.number("erosion.frequency_valley");
   c.seed = m.seed(7);
   return c;
 }
@@ -88,6 +93,7 @@ PlateControls plates_of(const Reader& m) {
   p.wiggle = m.number("plates.wiggle");
   p.wiggle_m = m.number("plates.wiggle_m");
   p.blend_m = m.number("plates.blend_m");
+  p.wrap_m = static_cast<std::int64_t>(m.number("world.wrap_m"));
   p.seed = m.seed(1);
   return p;
 }
@@ -119,6 +125,32 @@ MacroControls macro_of(const Reader& m) {
   return c;
 }
 
+/// Every district's share and shape.
+void read_districts(const Reader& m, WorldFunction::Terms& t) {
+  t.districts = {m.number("districts.wavelength_m"),
+                 m.number("districts.border"),
+                 {m.number("districts.badlands"), m.number("districts.dunes"), m.number("districts.mesas"),
+                  m.number("districts.karst"), m.number("districts.glacial")},
+                 m.seed(40)};
+  t.badlands = {m.number("districts.badland_hill_m"), m.number("districts.badland_wavelength_m"), m.seed(41)};
+  t.mesas = {m.number("districts.mesa_m"), m.number("districts.mesa_wavelength_m"), m.number("districts.canyon_width"),
+             m.seed(42)};
+  t.dunes = {m.number("districts.dune_m"), m.number("districts.dune_wavelength_m"), m.number("districts.dune_skew"),
+             m.number("districts.wind_m"), m.seed(43)};
+  t.karst = {m.number("districts.karst_m"), m.number("districts.karst_cell_m"), m.number("districts.karst_towers"),
+             m.number("districts.sink_m"), m.seed(44)};
+  t.rills = t.erosion;
+  t.rills.scale_m = m.number("districts.rill_m");
+  t.rills.strength = m.number("districts.rill_strength");
+  t.rills.octaves = m.whole("districts.rill_octaves");
+  // Soft ground is cut on gentle slopes as well; what is cut is lifted, so that basins do not drown.
+  t.rills.onset_input = 2.5 * t.erosion.onset_input;
+  t.rills.offset = 0.5;
+  t.rills.detail = 1.4 * t.erosion.detail;
+  t.rills.seed = m.seed(45);
+  t.terraces = std::make_unique<const Terraces>(t.strata->all_sets());
+}
+
 ReliefTerms relief_of(const Reader& m) {
   return {m.real("relief.base_m"),       m.real("relief.hill_m"),          m.real("erosion.fade_altitude"),
           m.real("erosion.fade_relief"), m.real("erosion.plain_strength"), m.real("erosion.hill_strength")};
@@ -131,13 +163,16 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   WorldFunction::Terms t;
   t.cells = m.whole("chunk.cells");
   t.voxel_m = m.number("chunk.voxel_m");
+  t.wrap_voxel = static_cast<std::int64_t>(m.number("world.wrap_m") / t.voxel_m);
   t.macro = std::make_unique<const MacroField>(plates_of(m), macro_of(m));
   t.relief = relief_of(m);
   t.hills = {m.number("relief.wavelength_m"), m.whole("relief.octaves"), m.number("relief.lacunarity"),
              m.number("relief.gain"), m.seed(6)};
   t.erosion = erosion_of(m);
+  t.frequency_share = m.real("erosion.frequency_share");
   t.strata = std::make_unique<const Strata>(
       StrataControls{m.whole("strata.sets"), m.real("strata.ledge"), m.real("strata.ledge_slope"), m.seed(9)});
+  read_districts(m, t);
   t.fold = {m.number("strata.fold_m"), 3, 2.2, 0.4, m.seed(10)};
   t.fold_m = m.real("strata.deformation_m");
   t.tilt = {m.number("strata.tilt_wavelength_m"), 1, 2.0, 0.5, m.seed(11)};
@@ -162,7 +197,10 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   const double gullies = erosion_bound(t.erosion);
   const glm::dvec2 eroded_m{t.macro->low_m() - 0.5 * hills - 0.1 * gullies,
                             t.macro->high_m() + hills + gullies + cones_bound(t.cones)};
-  const glm::dvec2 bound_m = coast_bound(t.coast, eroded_m);
+  const glm::dvec2 shaped_m = karst_bound(t.karst, mesas_bound(t.mesas, badlands_bound(t.badlands, eroded_m)));
+  const double moved_m = static_cast<double>(t.terraces->reach_m()) + erosion_bound(t.rills);
+  const glm::dvec2 dunes_m = dunes_bound(t.dunes, {shaped_m.x - moved_m, shaped_m.y + moved_m});
+  const glm::dvec2 bound_m = coast_bound(t.coast, dunes_m);
   t.low_m = static_cast<float>(bound_m.x);
   t.high_m = static_cast<float>(bound_m.y);
   t.manifest = std::move(manifest);

@@ -6,9 +6,14 @@
 #include "core/erosion/filter.hpp"
 #include "core/landforms/coast.hpp"
 #include "core/landforms/cones.hpp"
+#include "core/landforms/district.hpp"
+#include "core/landforms/dunes.hpp"
+#include "core/landforms/karst.hpp"
+#include "core/landforms/tables.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/plates/macro_field.hpp"
 #include "core/strata/strata.hpp"
+#include "core/strata/terraces.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
@@ -23,13 +28,22 @@ struct WorldFunction::Terms {
   Manifest manifest;
   int cells = 32;
   double voxel_m = 1;
+  std::int64_t wrap_voxel = 0;  ///< east-west period, 0 for none
   std::unique_ptr<const MacroField> macro;
   ReliefTerms relief{};
   FractalNoise hills, micro, fold, tilt, set_choice, district;
   ErosionControls erosion;
+  float frequency_share = 0;
   CoastControls coast;
   ConeControls cones;
   std::unique_ptr<const Strata> strata;
+  std::unique_ptr<const Terraces> terraces;
+  DistrictControls districts;
+  BadlandsControls badlands;
+  MesaControls mesas;
+  DuneControls dunes;
+  KarstControls karst;
+  ErosionControls rills;  ///< fine gullies of badlands, table land and karst
   float fold_m = 0, tilt_m = 0, resistance = 0;
   float micro_base_m = 0, micro_high_m = 0;
   float low_m = 0, high_m = 0;  ///< heights of surfaces never leave this

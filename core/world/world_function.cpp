@@ -6,6 +6,7 @@
 
 #include "core/base/check.hpp"
 #include "core/base/hash.hpp"
+#include "core/grid/wrap.hpp"
 #include "core/world/terms.hpp"
 
 namespace talus {
@@ -32,8 +33,16 @@ PlatePlace WorldFunction::plate_at(const glm::dvec2& place_m, ColumnWorkspace& w
   return place_at(terms_->macro->plates(), place_m, workspace.macro.plates);
 }
 
-Material WorldFunction::cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const {
+DistrictShares ColumnBlock::districts_at(std::size_t index) const {
+  DistrictShares out;
+  for (std::size_t k = 0; k < kDistricts; ++k) out[k] = district[k][index];
+  return out;
+}
+
+Material WorldFunction::cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel,
+                              const DistrictShares& districts) const {
   const Terms& t = *terms_;
+  column_voxel.x = wrapped(column_voxel.x, t.wrap_voxel);
   // A dither per column breaks the lines along which altitude and slope change the cover.
   const std::uint64_t hash = mix64(mix64(t.manifest.seed, static_cast<std::uint64_t>(column_voxel.x)),
                                    static_cast<std::uint64_t>(column_voxel.y));
@@ -42,22 +51,29 @@ Material WorldFunction::cover(float height_m, float up, float ridge, float hilli
   const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
   const float steep = slope + 0.12f * dither;
 
+  const float dry = districts[0] + districts[2];
+  const float rock_slope = t.rock_slope * (1.0f - 0.55f * dry);
+
   if (height_m < t.beach_m + 1.5f * dither && steep < 0.35f) return Material::kSand;
   if (height_m < -1.0f) return steep < t.rock_slope ? Material::kSand : Material::kRock;
-  if (steep > t.rock_slope) return Material::kRock;
+  if (districts[1] + 0.25f * dither > 0.45f && steep < t.rock_slope) return Material::kSand;
+  if (steep > rock_slope) return Material::kRock;
   if (height_m + 160.0f * dither - 220.0f * (slope - 0.4f) > t.snow_line_m) return Material::kSnow;
   if (ridge < -0.72f && hilliness > 0.15f && slope > 0.12f) return Material::kStreamBed;
   if (height_m + 120.0f * dither > t.grass_line_m) return steep > 0.45f ? Material::kScree : Material::kSoil;
-  if (steep > 0.72f * t.rock_slope) return ridge > 0.1f ? Material::kSoil : Material::kScree;
+  if (dry + 0.5f * dither > 0.5f) return steep > 0.6f * rock_slope ? Material::kScree : Material::kSoil;
+  if (steep > 0.72f * rock_slope) return ridge > 0.1f ? Material::kSoil : Material::kScree;
   return Material::kGrass;
 }
 
 Material WorldFunction::rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
+  column_voxel.x = wrapped(column_voxel.x, terms_->wrap_voxel);
   const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
   return terms_->strata->rock_at(stack_m, choice, height_m, place_m);
 }
 
 LayerPlace WorldFunction::layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
+  column_voxel.x = wrapped(column_voxel.x, terms_->wrap_voxel);
   const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
   return terms_->strata->layer_at(stack_m, choice, height_m, place_m);
 }

@@ -18,6 +18,7 @@
 #include "core/grid/chunk_key.hpp"
 #include "core/grid/column_grid.hpp"
 #include "core/landforms/cones.hpp"
+#include "core/landforms/district.hpp"
 #include "core/plates/macro_field.hpp"
 #include "core/plates/plate_place.hpp"
 #include "core/strata/material.hpp"
@@ -25,6 +26,9 @@
 #include "core/world/manifest.hpp"
 
 namespace talus {
+
+/// Weight of every district at a column, by District.
+using DistrictShares = std::array<float, kDistricts>;
 
 /// Working memory of a block: the kernels' intermediate arrays, plates made lately, cones around. It is no part of a
 /// block's value: a copy starts empty, and assigning leaves it as it is.
@@ -57,9 +61,12 @@ struct ColumnBlock {
   std::vector<float> choice;     ///< layer set, with the fraction over which the next one takes over
   std::vector<float> cliff_m;    ///< height of the sea cliff that stands here or nearby, 0 on other coasts and inland
   std::vector<float> beach;      ///< 1 on a beach, falling to 0 inland, in deeper water and on other coasts
-  float height_low_m = 0;        ///< over the whole block
+  std::array<std::vector<float>, kDistricts> district;  ///< weight of every district, 0..1
+  float height_low_m = 0;                               ///< over the whole block
   float height_high_m = 0;
   ColumnWorkspace workspace;
+
+  DistrictShares districts_at(std::size_t index) const;
 };
 
 class WorldFunction {
@@ -83,7 +90,8 @@ class WorldFunction {
   PlatePlace plate_at(const glm::dvec2& place_m, ColumnWorkspace& workspace) const;
 
   /// What covers the ground at a column whose surface has the unit normal's y component `up`.
-  Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel) const;
+  Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel,
+                 const DistrictShares& districts = {}) const;
   /// The rock of the layer at `height_m` in a column of this stack and choice.
   Material rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
   /// That layer.

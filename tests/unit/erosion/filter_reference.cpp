@@ -125,4 +125,37 @@ ErosionPoint erode_reference(const ErosionControls& c, double x_m, double z_m, d
   return out;
 }
 
+ErosionPoint erode_by_frequency_reference(const ErosionControls& c, double x_m, double z_m, double slope_x,
+                                          double slope_z, double fade_target, double point_strength) {
+  Vec gully{slope_x, slope_z};
+  const double fade = std::clamp(fade_target, -1.0, 1.0);
+  const double up = sat(fade + 1);
+  const double weight = c.gully_weight * mix(1, up * up * (3 - 2 * up), c.frequency_valley);
+  ErosionPoint out;
+  out.ridge = fade;
+  double ridge_mask = ease_out(length(gully) * c.ridge_onset_input);
+  double strength = c.strength * c.scale_m * point_strength;
+  double frequency = 1 / (c.scale_m * c.cell_scale);
+  for (int o = 0; o < c.octaves; ++o) {
+    const std::uint64_t seed = mix64(c.seed, static_cast<std::uint64_t>(o));
+    const double steep = length(gully);
+    const Vec n = gully * (1 / std::max(steep, 1e-10));
+    const double wanted = steep * c.frequency_slope;
+    const double stripes = c.cell_scale * wanted / std::hypot(1.0, wanted / c.frequency_max);
+    const Vec p{x_m * frequency + shift_of(seed, 0), z_m * frequency + shift_of(seed, 1)};
+    const Vec wave = phacelle(p, n, stripes, 0, c.normalisation, seed);
+    out.height_m += strength * (weight * (wave.x - 1) + c.frequency_pull * fade);
+    const Vec side = Vec{-n.z, n.x} * (-2 * std::numbers::pi * stripes * frequency * strength * weight * wave.z);
+    out.slope_x += side.x;
+    out.slope_z += side.z;
+    gully = gully + side * c.frequency_branch;
+    out.ridge = mix(out.ridge, wave.x, ridge_mask);
+    ridge_mask *= ease_out(std::abs(wave.z) * c.ridge_onset_octave);
+    strength *= c.gain;
+    frequency *= c.lacunarity;
+  }
+  out.ridge *= 1 - ridge_mask;
+  return out;
+}
+
 }  // namespace talus::testing

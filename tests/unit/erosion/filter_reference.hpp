@@ -14,4 +14,8 @@ struct ErosionPoint {
 ErosionPoint erode_reference(const ErosionControls& controls, double x_m, double z_m, double slope_x, double slope_z,
                              double fade_target, double strength);
 
+/// The same by the frequency method.
+ErosionPoint erode_by_frequency_reference(const ErosionControls& controls, double x_m, double z_m, double slope_x,
+                                          double slope_z, double fade_target, double strength);
+
 }  // namespace talus::testing

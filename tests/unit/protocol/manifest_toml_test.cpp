@@ -90,7 +90,7 @@ TEST(ManifestToml, RefusesEveryParameterOutOfRangeOfTheWrongTypeAndMistypedWithL
 }
 
 TEST(ManifestToml, NamesTheSectionsWhenNoneIsNear) {
-  EXPECT_THAT(faults_of("[zzz]\n"), ElementsAre(HasSubstr("known are [chunk] [plates]")));
+  EXPECT_THAT(faults_of("[zzz]\n"), ElementsAre(HasSubstr("known are [chunk] [world] [plates]")));
 }
 
 TEST(ManifestToml, RefusesNumbersThatAreNone) {
