@@ -16,6 +16,10 @@ client::StreamHandlers Flight::handlers() {
   out.on_welcome = [this](const client::WorldInfo&) { log_.welcome_s = seconds(); };
   out.on_view = [this](const protocol::ViewAccepted& accepted) { log_.wanted = accepted.chunks; };
   out.on_chunk = [this](const client::ArrivedChunk& chunk) { on_chunk(chunk); };
+  out.on_strip = [this](const client::ArrivedStrip& strip) {
+    log_.strips += strip.payload.empty() ? 0U : 1U;
+    log_.strip_bytes += strip.payload.size();
+  };
   out.on_leave = [this](const std::vector<ChunkKey>& keys) { log_.leaves += keys.size(); };
   out.on_idle = [this](const protocol::Idle& idle) {
     ++log_.idles;

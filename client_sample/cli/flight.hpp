@@ -20,6 +20,8 @@ struct FlightLog {
   std::optional<double> complete_s;      ///< everything of a view that was still the latest has come
   std::uint64_t meshes = 0;
   std::uint64_t empties = 0;  ///< chunks of air or rock
+  std::uint64_t strips = 0;   ///< with triangles
+  std::uint64_t strip_bytes = 0;
   std::uint64_t leaves = 0;
   std::uint64_t bytes = 0;      ///< of payloads
   std::uint64_t triangles = 0;  ///< only when meshes are decoded

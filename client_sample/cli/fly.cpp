@@ -104,6 +104,8 @@ Total total_of(const Flights& flights) {
     const FlightLog& log = flight->log();
     out.sum.meshes += log.meshes;
     out.sum.empties += log.empties;
+    out.sum.strips += log.strips;
+    out.sum.strip_bytes += log.strip_bytes;
     out.sum.leaves += log.leaves;
     out.sum.bytes += log.bytes;
     out.sum.triangles += log.triangles;
@@ -138,14 +140,15 @@ void print_line(const Total& now, const Total& before, double seconds, std::size
 void print_summary(const Total& total, const FlyOptions& options, double seconds) {
   const FlightLog& sum = total.sum;
   if (options.is_json) {
-    fmt::print(R"({{"viewers":{},"complete":{},"failed":{},"seconds":{:.3f},"welcome_s":{},"first_chunk_s":{},)"
-               R"("first_ground_s":{},"complete_s":{},"chunks":{},"meshes":{},"empties":{},"leaves":{},"bytes":{},)"
-               R"("triangles":{},"views":{},"idles":{},"wanted":{},"error":{}}})"
-               "\n",
-               options.viewers, total.complete, total.failed, seconds, time_json(sum.welcome_s),
-               time_json(sum.first_chunk_s), time_json(sum.first_ground_s), time_json(sum.complete_s), sum.chunks(),
-               sum.meshes, sum.empties, sum.leaves, sum.bytes, sum.triangles, sum.views, sum.idles, sum.wanted,
-               sum.error ? json_string(sum.error->message) : "null");
+    fmt::print(
+        R"({{"viewers":{},"complete":{},"failed":{},"seconds":{:.3f},"welcome_s":{},"first_chunk_s":{},)"
+        R"("first_ground_s":{},"complete_s":{},"chunks":{},"meshes":{},"empties":{},"strips":{},"strip_bytes":{},"leaves":{},"bytes":{},)"
+        R"("triangles":{},"views":{},"idles":{},"wanted":{},"error":{}}})"
+        "\n",
+        options.viewers, total.complete, total.failed, seconds, time_json(sum.welcome_s), time_json(sum.first_chunk_s),
+        time_json(sum.first_ground_s), time_json(sum.complete_s), sum.chunks(), sum.meshes, sum.empties, sum.strips,
+        sum.strip_bytes, sum.leaves, sum.bytes, sum.triangles, sum.views, sum.idles, sum.wanted,
+        sum.error ? json_string(sum.error->message) : "null");
     return;
   }
   fmt::print("viewers         {} ({} complete, {} failed)\n", options.viewers, total.complete, total.failed);
@@ -155,6 +158,7 @@ void print_summary(const Total& total, const FlyOptions& options, double seconds
   fmt::print("chunks          {} ({} with a surface, {} left again)\nbytes           {} ({:.1f} a surface)\n",
              sum.chunks(), sum.meshes, sum.leaves, sum.bytes,
              sum.meshes > 0 ? static_cast<double>(sum.bytes) / static_cast<double>(sum.meshes) : 0.0);
+  fmt::print("seam strips     {} ({} bytes)\n", sum.strips, sum.strip_bytes);
   if (options.decodes) fmt::print("triangles       {}\n", sum.triangles);
   if (sum.error) fmt::print("error           {}\n", sum.error->message);
 }

@@ -37,8 +37,9 @@ class Assembly {
 
   std::size_t edges() const { return edges_.size() + inner_; }
 
-  /// Edges that are not walked once each way, but for those on the hull: next to a place that is not in the view.
-  std::vector<Walked> open_edges() {
+  /// Edges that are not walked as often one way as the other, or by more than `triangles_max`, but for those on the
+  /// hull: next to a place that is not in the view.
+  std::vector<Walked> open_edges(std::size_t triangles_max) {
     std::ranges::sort(edges_);
     std::vector<Walked> out;
     for (std::size_t i = 0; i < edges_.size();) {
@@ -47,7 +48,7 @@ class Assembly {
       for (; end < edges_.size() && edges_[end].low == edges_[i].low && edges_[end].high == edges_[i].high; ++end) {
         ways += edges_[end].way;
       }
-      const bool is_closed = end - i == 2 && ways == 0;
+      const bool is_closed = end - i <= triangles_max && ways == 0;
       if (!is_closed && !is_on_hull(edges_[i])) out.push_back(edges_[i]);
       i = end;
     }

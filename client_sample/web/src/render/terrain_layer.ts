@@ -87,28 +87,30 @@ export class TerrainLayer {
   private readonly disposals = new Set<ChunkMesh>(); // when they have left
 
   constructor(shared: SharedUniforms, shadow: Record<string, THREE.IUniform>) {
-    this.material = new THREE.RawShaderMaterial({
-      glslVersion: THREE.GLSL3,
-      vertexShader,
-      fragmentShader: kHeader + kAtmosphere + shadowShader + fadeShader + fragmentShader,
-      uniforms: {
-        ...shared,
-        ...shadow,
-        uStrataThick: { value: strataTable(20261122, 60) },
-        uStrataThin: { value: strataTable(4711, 34) },
-        uPalette: { value: Array.from({ length: kPaletteSize }, () => new THREE.Color(0.4, 0.4, 0.4)) },
-      },
-    });
-    this.fading = this.material.clone();
-    this.fading.uniforms = { ...this.material.uniforms };
-    this.fading.defines = { FADING: 1 };
+    const uniforms = {
+      ...shared,
+      ...shadow,
+      uStrataThick: { value: strataTable(20261122, 60) },
+      uStrataThin: { value: strataTable(4711, 34) },
+      uPalette: { value: Array.from({ length: kPaletteSize }, () => new THREE.Color(0.4, 0.4, 0.4)) },
+    };
+    const ground = (defines: Record<string, number>): THREE.RawShaderMaterial =>
+      new THREE.RawShaderMaterial({
+        glslVersion: THREE.GLSL3,
+        vertexShader,
+        fragmentShader: kHeader + kAtmosphere + shadowShader + fadeShader + fragmentShader,
+        uniforms: { ...uniforms }, // their values are shared
+        defines,
+      });
+    this.material = ground({});
+    this.fading = ground({ FADING: 1 });
     this.fades = new Fades(this.fading);
     this.seamMaterial = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
       vertexShader,
       fragmentShader: seamShader,
       uniforms: { ...shared },
-      side: THREE.DoubleSide,
+      wireframe: true, // most strips are thinner than a pixel
     });
     this.scene.matrixWorldAutoUpdate = false;
   }
