@@ -42,7 +42,7 @@ class Column {
     brick_.stand(world, corner_.x, corner_.y, step_, 1);
     y_voxel_ = cell(view.low_m / world.voxel_m()) * step_;
     const double layers = (view.high_m / world.voxel_m() - static_cast<double>(y_voxel_)) / static_cast<double>(step_);
-    brick_.sample(y_voxel_, static_cast<int>(std::ceil(layers)) + 2);
+    brick_.sample(world, y_voxel_, static_cast<int>(std::ceil(layers)) + 2);
   }
 
   double density(double y_m) const {

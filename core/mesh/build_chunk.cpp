@@ -9,15 +9,16 @@
 namespace talus {
 namespace {
 
-/// Sign words of the (cells + 1)^3 samples. Layers under the sampled ones are rock, those above air.
-void read_signs(const Samples& samples, const LayerInterval& layers, SignRows& out) {
+/// Sign words of the (cells + 1)^3 samples. Layers under a row's sampled ones are rock, those above air.
+void read_signs(const Samples& samples, const std::vector<LayerInterval>& row_layers, SignRows& out) {
   const int count = out.cells + 1;
   out.rows.resize(static_cast<std::size_t>(count * count));
   const std::uint64_t rock = (std::uint64_t{1} << count) - 1;
   for (int y = 0; y < count; ++y) {
-    const bool below = y < layers.first;
-    const bool sampled = !below && y < layers.first + layers.count;
     for (int z = 0; z < count; ++z) {
+      const LayerInterval& layers = row_layers[static_cast<std::size_t>(z + 1)];
+      const bool below = y < layers.first;
+      const bool sampled = !below && y < layers.first + layers.count;
       std::uint64_t row = below ? rock : 0;
       if (sampled) {
         const float* values = samples.row(y, z);
@@ -79,13 +80,17 @@ ChunkKind kind_by_heights(const WorldFunction& world, const ChunkKey& key, doubl
 
 DensityBox sample_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch) {
   const std::int64_t y_voxel = corner_voxel(key, world.cells()).y;
-  const LayerInterval layers = layers_near_surface(scratch.columns, y_voxel, world.cells());
-  const std::size_t floats = density_floats(scratch.columns.grid, layers.count);
+  row_spans(world, scratch.columns, scratch.spans);
+  const LayerInterval all = layers_near_surface(scratch.columns, scratch.spans, y_voxel, world.cells(), scratch.layers);
+  const std::size_t floats = density_floats(scratch.columns.grid, all.count);
   scratch.density.resize(std::max(scratch.density.size(), floats));
-  const std::int64_t first_voxel = y_voxel + layers.first * scratch.columns.grid.step_voxel;
-  const DensityBox box = sample_density(scratch.columns, first_voxel, layers.count, scratch.density);
+  scratch.wanted = scratch.layers;
+  for (LayerInterval& row : scratch.wanted) row.first -= all.first;
+  const std::int64_t first_voxel = y_voxel + all.first * scratch.columns.grid.step_voxel;
+  const DensityBox box =
+      sample_density(world, scratch.columns, first_voxel, all.count, scratch.wanted, scratch.volume, scratch.density);
   scratch.signs.cells = world.cells();
-  read_signs(Samples(box, scratch.density.data(), layers.first), layers, scratch.signs);
+  read_signs(Samples(box, scratch.density.data(), all.first), scratch.layers, scratch.signs);
   return box;
 }
 
@@ -113,8 +118,9 @@ ChunkKind build_chunk(const WorldFunction& world, const ChunkKey& key, ChunkScra
   const glm::dvec2 range = world.height_range_m();
   if (const ChunkKind kind = kind_by_heights(world, key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
   world.columns(chunk_columns(world, key), scratch.columns);
-  const auto low_m = static_cast<double>(scratch.columns.height_low_m);
-  const auto high_m = static_cast<double>(scratch.columns.height_high_m);
+  world.volume(scratch.columns, scratch.volume);
+  const auto low_m = static_cast<double>(scratch.columns.rock_below_m);
+  const auto high_m = static_cast<double>(scratch.columns.air_above_m);
   if (const ChunkKind kind = kind_by_heights(world, key, low_m, high_m); kind != ChunkKind::kMesh) return kind;
   return mesh_chunk(world, key, sample_chunk(world, key, scratch), scratch, out);
 }

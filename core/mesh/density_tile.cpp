@@ -35,11 +35,12 @@ ChunkKind sample_density_tile(const WorldFunction& world, const ChunkKey& key, C
   const ColumnBlock& columns = scratch.columns;
   const int count = world.cells() + 1;
   TALUS_CHECK(columns.grid == chunk_columns(world, key));
+  if (!columns.has_volume) world.volume(scratch.columns, scratch.volume);
   const std::int64_t step_voxel = columns.grid.step_voxel;
   const std::int64_t first_voxel = corner_voxel(key, world.cells()).y - step_voxel;
   const int layers = count + 2;
   scratch.density.resize(std::max(scratch.density.size(), density_floats(columns.grid, layers)));
-  const DensityBox box = sample_density(columns, first_voxel, layers, scratch.density);
+  const DensityBox box = sample_density(world, columns, first_voxel, layers, {}, scratch.volume, scratch.density);
   const Samples field(box, scratch.density.data(), -1);
 
   const double cell_m = static_cast<double>(step_voxel) * world.voxel_m();

@@ -17,14 +17,27 @@ float ground_up(const ColumnBlock& columns, int i, int k) {
   return 1.0F / std::sqrt(1.0F + x * x + z * z);
 }
 
-Material surface_material(const WorldFunction& world, const ColumnBlock& columns, int i, int k, float up,
-                          float height_m) {
+namespace {
+
+/// What lies at a height of a column, out in the open or under a roof.
+Material material_at(const WorldFunction& world, const ColumnBlock& columns, int i, int k, float up, float height_m,
+                     bool is_roofed) {
   const std::size_t at = static_cast<std::size_t>(k + 1) * columns.stride + static_cast<std::size_t>(i + 1);
   const glm::i64vec2 voxel{columns.grid.x_voxel + (i + 1) * columns.grid.step_voxel,
                            columns.grid.z_voxel + (k + 1) * columns.grid.step_voxel};
-  const Material cover = world.cover(height_m, up, columns.ridge[at], columns.hilliness[at], voxel);
+  const Material cover =
+      is_roofed ? world.sheltered(height_m, up)
+                : world.cover(height_m, up, columns.ridge[at], columns.hilliness[at], voxel, columns.districts_at(at));
   if (cover != Material::kRock) return cover;
   return world.rock(columns.stack_m[at], columns.choice[at], height_m, voxel);
+}
+
+}  // namespace
+
+Material surface_material(const WorldFunction& world, const ColumnBlock& columns, int i, int k, float up,
+                          float height_m) {
+  const std::size_t at = static_cast<std::size_t>(k + 1) * columns.stride + static_cast<std::size_t>(i + 1);
+  return material_at(world, columns, i, k, up, height_m, top_m(columns, at) - height_m > kUnderRoof_m);
 }
 
 void sample_height_tile(const WorldFunction& world, const ColumnBlock& columns, HeightTile& out) {
@@ -44,7 +57,7 @@ void sample_height_tile(const WorldFunction& world, const ColumnBlock& columns, 
       out.heights[to] = static_cast<std::int32_t>(std::floor(static_cast<double>(height_m) / out.step_m + 0.5));
       out.ridges[to] = ridge_byte(columns.ridge[at]);
       const float up = ground_up(columns, i, k);
-      out.materials[to] = static_cast<std::uint8_t>(surface_material(world, columns, i, k, up, height_m));
+      out.materials[to] = static_cast<std::uint8_t>(material_at(world, columns, i, k, up, height_m, false));
     }
   }
 }

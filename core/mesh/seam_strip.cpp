@@ -36,9 +36,10 @@ struct FaceFrame {
 class Section {
  public:
   /// `cells` is how many the part has along y: none for a level face, of which one layer and its neighbours count.
-  Section(const WorldFunction& world, StripScratch::Lattice& lattice, std::int64_t y_voxel, int cells)
-      : layers_(layers_near_surface(lattice.columns, y_voxel, cells)),
-        samples_(sample(lattice, y_voxel, layers_)),
+  Section(const WorldFunction& world, VolumeScratch& volume, StripScratch::Lattice& lattice, std::int64_t y_voxel,
+          int cells)
+      : layers_(layers(world, volume, lattice.columns, y_voxel, cells)),
+        samples_(sample(world, volume, lattice, y_voxel, layers_)),
         maker_(world, lattice.columns, samples_, y_voxel) {}
   Section(const Section&) = delete;
   Section& operator=(const Section&) = delete;
@@ -51,12 +52,18 @@ class Section {
   MeshVertex vertex(const glm::ivec3& from, int axis) const { return maker_({axis, from.x, from.y, from.z}); }
 
  private:
-  static Samples sample(StripScratch::Lattice& lattice, std::int64_t y_voxel, const LayerInterval& layers) {
+  static LayerInterval layers(const WorldFunction& world, VolumeScratch& volume, ColumnBlock& columns,
+                              std::int64_t y_voxel, int cells) {
+    if (!columns.has_volume) world.volume(columns, volume);
+    return layers_near_surface(columns, y_voxel, cells);
+  }
+  static Samples sample(const WorldFunction& world, VolumeScratch& volume, StripScratch::Lattice& lattice,
+                        std::int64_t y_voxel, const LayerInterval& layers) {
     const std::size_t floats = density_floats(lattice.columns.grid, layers.count);
     lattice.density.resize(std::max(lattice.density.size(), floats));
     const std::int64_t first_voxel = y_voxel + layers.first * lattice.columns.grid.step_voxel;
-    return {sample_density(lattice.columns, first_voxel, layers.count, lattice.density), lattice.density.data(),
-            layers.first};
+    return {sample_density(world, lattice.columns, first_voxel, layers.count, {}, volume, lattice.density),
+            lattice.density.data(), layers.first};
   }
 
   LayerInterval layers_;
@@ -108,7 +115,7 @@ class StripMaker {
   void make() {
     if (frame_.normal == 1) return level();
     load_upright(fine_step(), 2 * cells_, scratch_.fine.columns);
-    const Section fine(world_, scratch_.fine, corner_.y, 2 * cells_);
+    const Section fine(world_, scratch_.volume, scratch_.fine, corner_.y, 2 * cells_);
     part(fine, {0, 0}, cells_);
   }
 
@@ -122,7 +129,7 @@ class StripMaker {
     const ChunkKey first = children_of(key_)[0];
     for (const ChunkKey& child : finer) {
       columns_(child, scratch_.fine.columns);
-      const Section fine(world_, scratch_.fine, plane_voxel(), 0);
+      const Section fine(world_, scratch_.volume, scratch_.fine, plane_voxel(), 0);
       const glm::ivec3 place{child.x - first.x, 0, child.z - first.z};
       part(fine, glm::ivec2{place[frame_.u], place[frame_.v]} * (cells_ / 2), cells_ / 2);
     }
@@ -144,10 +151,10 @@ class StripMaker {
     if (coarse_) return *coarse_;
     if (frame_.normal == 1) {
       columns_(key_, scratch_.coarse.columns);
-      return coarse_.emplace(world_, scratch_.coarse, plane_voxel(), 0);
+      return coarse_.emplace(world_, scratch_.volume, scratch_.coarse, plane_voxel(), 0);
     }
     load_upright(2 * fine_step(), cells_, scratch_.coarse.columns);
-    return coarse_.emplace(world_, scratch_.coarse, corner_.y, cells_);
+    return coarse_.emplace(world_, scratch_.volume, scratch_.coarse, corner_.y, cells_);
   }
 
   /// `cells` x `cells` coarse cells from `first` on; the section's corner is the first's.

@@ -18,7 +18,8 @@
 
 namespace talus {
 
-/// Fills a block with the columns that `key` stands on (chunk_columns): evaluated, or remembered.
+/// Fills a block with the columns that `key` stands on (chunk_columns), evaluated or remembered, with or without their
+/// volume.
 using ColumnLoader = std::function<void(const ChunkKey& key, ColumnBlock& out)>;
 
 /// Working memory of one thread. Once it has grown to its largest strip no call allocates.
@@ -29,6 +30,7 @@ struct StripScratch {
   };
   Lattice fine;
   Lattice coarse;
+  VolumeScratch volume;
   std::vector<std::uint8_t> rock;       ///< signs of the fine samples of a face
   std::vector<std::int32_t> vertex_of;  ///< by crossing; -1 where there is none yet
 };

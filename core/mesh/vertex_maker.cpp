@@ -14,16 +14,39 @@ glm::vec3 unit(const glm::vec3& v) {
   return {v.x * inverse, v.y * inverse, v.z * inverse};
 }
 
+LayerInterval layers_within(const HeightSpan& span, const ColumnGrid& grid, std::int64_t y_voxel, int cells) {
+  const double step_m = static_cast<double>(grid.step_voxel) * grid.voxel_m;
+  const double y_m = static_cast<double>(y_voxel) * grid.voxel_m;
+  const auto layer = [&](float height_m) { return std::floor((static_cast<double>(height_m) - y_m) / step_m); };
+  const double limit = cells + 1;
+  const auto first = static_cast<int>(std::clamp(layer(span.low_m) - 2.0, -1.0, limit));
+  const auto last = static_cast<int>(std::clamp(layer(span.high_m) + 3.0, -1.0, limit));
+  return {first, last - first + 1};
+}
+
 }  // namespace
 
 LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells) {
-  const double step_m = static_cast<double>(columns.grid.step_voxel) * columns.grid.voxel_m;
-  const double y_m = static_cast<double>(y_voxel) * columns.grid.voxel_m;
-  const auto layer = [&](float height_m) { return std::floor((static_cast<double>(height_m) - y_m) / step_m); };
-  const double limit = cells + 1;
-  const auto first = static_cast<int>(std::clamp(layer(columns.height_low_m) - 2.0, -1.0, limit));
-  const auto last = static_cast<int>(std::clamp(layer(columns.height_high_m) + 3.0, -1.0, limit));
-  return {first, last - first + 1};
+  return layers_within({columns.rock_below_m, columns.air_above_m}, columns.grid, y_voxel, cells);
+}
+
+LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> rows, std::int64_t y_voxel,
+                                  int cells, std::vector<LayerInterval>& out) {
+  out.resize(rows.size());
+  LayerInterval all{cells + 1, 0};
+  int all_end = -1;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    // A row is read for its own vertices, for those of edges towards it and for the normals of both.
+    const std::size_t end = std::min(k + 3, rows.size());
+    HeightSpan near = rows[k];
+    for (std::size_t n = k < 2 ? 0 : k - 2; n < end; ++n)
+      near = {std::min(near.low_m, rows[n].low_m), std::max(near.high_m, rows[n].high_m)};
+    out[k] = layers_within(near, columns.grid, y_voxel, cells);
+    all.first = std::min(all.first, out[k].first);
+    all_end = std::max(all_end, out[k].first + out[k].count);
+  }
+  all.count = all_end - all.first;
+  return all;
 }
 
 VertexMaker::VertexMaker(const WorldFunction& world, const ColumnBlock& columns, const Samples& samples,
@@ -50,8 +73,12 @@ MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
   const float height_m = y_m_ + (static_cast<float>(position.y) / static_cast<float>(kStepsPerCell)) * step_m_;
   const glm::i64vec2 column_voxel{columns_.grid.x_voxel + (e.x + 1) * columns_.grid.step_voxel,
                                   columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
-  Material material = world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel,
-                                   columns_.districts_at(from_column));
+  const float from_top_m = top_m(columns_, from_column);
+  const float over_m = from_top_m + (top_m(columns_, to_column) - from_top_m) * t;
+  Material material = over_m - height_m > kUnderRoof_m
+                          ? world_.sheltered(height_m, normal.y)
+                          : world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel,
+                                         columns_.districts_at(from_column));
 
   if (material == Material::kRock) {
     const float stack_m =

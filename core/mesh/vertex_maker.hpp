@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -39,15 +41,12 @@ class Samples {
   const float* origin_;  ///< sample (0, 0, 0), which lies outside the array when its layer is not sampled
 };
 
-/// Layers of samples by y, in steps of a lattice: first, first + 1 ... of -1 .. cells + 1.
-struct LayerInterval {
-  int first = 0;
-  int count = 0;
-};
-
-/// Layers of samples that the surface can touch, with two more on either side: one whose sign is plain, one for
-/// normals. Samples below the interval are rock, those above it air.
+/// Layers of samples that the surface can touch, of -1 .. cells + 1, with two more on either side: one whose sign is
+/// plain, one for normals. Samples below the interval are rock, those above it air. Requires a volume.
 LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells);
+/// The same for each row of columns by itself, counted as above; returns all rows' together.
+LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> rows, std::int64_t y_voxel,
+                                  int cells, std::vector<LayerInterval>& out);
 
 struct MeshVertex {
   glm::u16vec3 position;  ///< steps from sample (0, 0, 0)

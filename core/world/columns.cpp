@@ -84,6 +84,7 @@ class ColumnStages {
         free_(out.workspace.arrays, count_, kWorkspaceArrays),
         districts_(free_, grid, out) {
     out.grid = grid;
+    out.has_volume = false;
     out.stride = stride_;
     for (auto* array : {&out.height_m, &out.slope_x, &out.slope_z, &out.steepness, &out.ridge, &out.hilliness,
                         &out.stack_m, &out.choice, &out.cliff_m, &out.beach})

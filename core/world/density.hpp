@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "core/world/volume_scratch.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
@@ -19,11 +21,27 @@ struct DensityBox {
   std::size_t depth = 0;   ///< rows along z
 };
 
+/// Layers of a box: first .. first + count - 1.
+struct LayerInterval {
+  int first = 0;
+  int count = 0;
+};
+
+/// Heights between which a surface can be, in metres: rock below, air from the upper one on.
+struct HeightSpan {
+  float low_m, high_m;
+};
+
+/// The span of each row of columns along z, carving and warp included. Requires a volume.
+void row_spans(const WorldFunction& world, const ColumnBlock& columns, std::vector<HeightSpan>& out);
+
 /// Floats that `sample_density` needs for a box of `layers` over `columns`: rows are written in whole vectors.
 std::size_t density_floats(const ColumnGrid& grid, int layers);
 
-/// Fills `samples` (density_floats of them) and says how they lie. The value at a lattice point depends on its column
-/// and its y alone.
-DensityBox sample_density(const ColumnBlock& columns, std::int64_t y_voxel, int layers, std::span<float> samples);
+/// Fills `samples` (density_floats of them) and says how they lie. The value at a lattice point depends on that point
+/// alone. `wanted` names the layers of each row along z that are needed, all others stay as they are; empty: all.
+/// Requires columns with a volume, on the lattice of their step, as `y_voxel` is.
+DensityBox sample_density(const WorldFunction& world, const ColumnBlock& columns, std::int64_t y_voxel, int layers,
+                          std::span<const LayerInterval> wanted, VolumeScratch& scratch, std::span<float> samples);
 
 }  // namespace talus

@@ -8,12 +8,13 @@ namespace talus {
 void DensityBrick::stand(const WorldFunction& world, std::int64_t x_voxel, std::int64_t z_voxel, std::int64_t step,
                          int cells) {
   world.columns({x_voxel, z_voxel, step, cells + 1, cells + 1, world.voxel_m()}, columns_);
+  world.volume(columns_, volume_);
 }
 
-void DensityBrick::sample(std::int64_t y_voxel, int layers) {
+void DensityBrick::sample(const WorldFunction& world, std::int64_t y_voxel, int layers) {
   const std::size_t floats = density_floats(columns_.grid, layers);
   samples_.resize(std::max(samples_.size(), floats));
-  box_ = sample_density(columns_, y_voxel, layers, samples_);
+  box_ = sample_density(world, columns_, y_voxel, layers, {}, volume_, samples_);
 }
 
 std::array<float, 8> DensityBrick::corners(int i, int j, int k) const {

@@ -21,11 +21,11 @@ class DensityBrick {
   void stand(const WorldFunction& world, std::int64_t x_voxel, std::int64_t z_voxel, std::int64_t step, int cells);
 
   /// Above the second and at or below the first there is no surface: metres.
-  double rock_below_m() const { return static_cast<double>(columns_.height_low_m); }
-  double air_above_m() const { return static_cast<double>(columns_.height_high_m); }
+  double rock_below_m() const { return static_cast<double>(columns_.rock_below_m); }
+  double air_above_m() const { return static_cast<double>(columns_.air_above_m); }
 
-  /// Densities of `layers` samples from y_voxel upwards. Requires stand().
-  void sample(std::int64_t y_voxel, int layers);
+  /// Densities of `layers` samples from y_voxel upwards, on the lattice too. Requires stand() in this world.
+  void sample(const WorldFunction& world, std::int64_t y_voxel, int layers);
 
   /// Densities at the corners of cell (i, j, k), j from the lowest sampled layer; x fastest, then y, then z.
   std::array<float, 8> corners(int i, int j, int k) const;
@@ -36,6 +36,7 @@ class DensityBrick {
 
  private:
   ColumnBlock columns_;
+  VolumeScratch volume_;
   std::vector<float> samples_;
   DensityBox box_;
 };

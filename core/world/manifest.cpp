@@ -8,6 +8,7 @@
 #include "core/base/check.hpp"
 #include "core/grid/chunk_key.hpp"
 #include "core/world/manifest_table.hpp"
+#include "core/world/terms.hpp"
 
 namespace talus {
 namespace {
@@ -92,6 +93,7 @@ std::vector<ManifestFault> manifest_faults(const Manifest& manifest) {
   if (parameter(manifest, "macro.sea_floor_m") >= -parameter(manifest, "macro.shelf_depth_m")) {
     faults.push_back({"macro.sea_floor_m", "is not below the shelf's edge, -macro.shelf_depth_m"});
   }
+  volume_faults(manifest, faults);
   return faults;
 }
 

@@ -140,7 +140,7 @@ class Caster {
     const double top = std::floor(std::max(at(begin).y, at(end).y)) + 1;
     const auto y_voxel = static_cast<std::int64_t>(bottom);
     const int layers = static_cast<int>(top - bottom) + 1;
-    brick_.sample(y_voxel, layers);
+    brick_.sample(world_, y_voxel, layers);
     const ColumnGrid& grid = brick_.columns().grid;
     const glm::dvec3 corner(static_cast<double>(grid.x_voxel), bottom, static_cast<double>(grid.z_voxel));
     const glm::dvec3 local = from_ - corner;
@@ -183,7 +183,10 @@ class Caster {
     const glm::i64vec2 voxel{b.grid.x_voxel + cell[0] + (place.x > 0.5 ? 1 : 0),
                              b.grid.z_voxel + cell[2] + (place.z > 0.5 ? 1 : 0)};
     const auto height = static_cast<float>(out.position_m.y);
-    out.material = world_.cover(height, static_cast<float>(out.normal.y), b.ridge[column], b.hilliness[column], voxel);
+    const auto up = static_cast<float>(out.normal.y);
+    out.material = top_m(b, column) - height > kUnderRoof_m
+                       ? world_.sheltered(height, up)
+                       : world_.cover(height, up, b.ridge[column], b.hilliness[column], voxel, b.districts_at(column));
     if (out.material == Material::kRock) out.material = world_.rock(b.stack_m[column], b.choice[column], height, voxel);
     return out;
   }

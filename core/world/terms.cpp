@@ -173,6 +173,10 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.strata = std::make_unique<const Strata>(
       StrataControls{m.whole("strata.sets"), m.real("strata.ledge"), m.real("strata.ledge_slope"), m.seed(9)});
   read_districts(m, t);
+  t.profile = std::make_unique<const HardnessProfile>(*t.strata);
+  t.warp = warp_of(manifest);
+  t.carve = carve_of(manifest);
+  for (const std::byte b : canonical_bytes(manifest)) t.identity = mix64(t.identity, static_cast<std::uint64_t>(b));
   t.fold = {m.number("strata.fold_m"), 3, 2.2, 0.4, m.seed(10)};
   t.fold_m = m.real("strata.deformation_m");
   t.tilt = {m.number("strata.tilt_wavelength_m"), 1, 2.0, 0.5, m.seed(11)};

@@ -12,8 +12,10 @@
 #include "core/landforms/tables.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/plates/macro_field.hpp"
+#include "core/strata/hardness_profile.hpp"
 #include "core/strata/strata.hpp"
 #include "core/strata/terraces.hpp"
+#include "core/volume/controls.hpp"
 #include "core/world/world_function.hpp"
 
 namespace talus {
@@ -44,11 +46,22 @@ struct WorldFunction::Terms {
   DuneControls dunes;
   KarstControls karst;
   ErosionControls rills;  ///< fine gullies of badlands, table land and karst
+  std::unique_ptr<const HardnessProfile> profile;
+  WarpControls warp;
+  CarveControls carve;
+  std::uint64_t identity = 0;  ///< of the whole manifest
   float fold_m = 0, tilt_m = 0, resistance = 0;
   float micro_base_m = 0, micro_high_m = 0;
   float low_m = 0, high_m = 0;  ///< heights of surfaces never leave this
   float snow_line_m = 0, grass_line_m = 0, beach_m = 0, rock_slope = 0;
 };
+
+WarpControls warp_of(const Manifest& manifest);
+CarveControls carve_of(const Manifest& manifest);
+/// Contradictions between parameters of the volume, each of which is within its limits.
+void volume_faults(const Manifest& manifest, std::vector<ManifestFault>& faults);
+/// Horizontal distance from a seed of this pass to the furthest point that can feel it, in metres.
+double carve_reach_m(const CarveControls& controls, CarveKind kind);
 
 /// Requires manifest_faults(manifest) to be empty.
 WorldFunction::Terms terms_of(Manifest manifest);

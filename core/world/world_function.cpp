@@ -66,6 +66,12 @@ Material WorldFunction::cover(float height_m, float up, float ridge, float hilli
   return Material::kGrass;
 }
 
+Material WorldFunction::sheltered(float height_m, float up) const {
+  constexpr float kFloorUp = 0.8f;  // about 37 degrees: what falls on a steeper floor rolls off
+  if (up < kFloorUp) return Material::kRock;
+  return height_m < terms_->beach_m ? Material::kSand : Material::kScree;
+}
+
 Material WorldFunction::rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
   column_voxel.x = wrapped(column_voxel.x, terms_->wrap_voxel);
   const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;

@@ -23,6 +23,7 @@
 #include "core/plates/plate_place.hpp"
 #include "core/strata/material.hpp"
 #include "core/strata/strata.hpp"
+#include "core/volume/carve_spheres.hpp"
 #include "core/world/manifest.hpp"
 
 namespace talus {
@@ -64,10 +65,30 @@ struct ColumnBlock {
   std::array<std::vector<float>, kDistricts> district;  ///< weight of every district, 0..1
   float height_low_m = 0;                               ///< over the whole block
   float height_high_m = 0;
+
+  // What `volume` adds.
+  bool has_volume = false;
+  bool has_jut = false;
+  std::vector<float> jut_m;          ///< metres by which the hardest beds raise the surface; unset unless has_jut
+  std::vector<CarveSphere> spheres;  ///< all that samples over these columns can feel
+  float rock_below_m = 0;            ///< everything in these columns below is rock
+  float air_above_m = 0;             ///< everything in them at or above is air
+
   ColumnWorkspace workspace;
 
   DistrictShares districts_at(std::size_t index) const;
 };
+
+/// The highest that rock can stand in column `at` of a block, in metres: what the sky sees.
+inline float top_m(const ColumnBlock& block, std::size_t at) {
+  return block.height_m[at] + (block.has_volume && block.has_jut ? block.jut_m[at] : 0.0f);
+}
+/// Deeper below its column's top than this a point is in a cave, under an overhang or under an arch, in metres: what
+/// lies under the open sky does not lie there.
+inline constexpr float kUnderRoof_m = 2.5f;
+
+/// Working memory of one thread for warp and carving (core/world/volume_scratch.hpp).
+struct VolumeScratch;
 
 class WorldFunction {
  public:
@@ -89,15 +110,22 @@ class WorldFunction {
   /// The plate under a point, in metres from the origin, and the fault next to it.
   PlatePlace plate_at(const glm::dvec2& place_m, ColumnWorkspace& workspace) const;
 
+  /// Completes `block`, filled by columns(): how far beds jut out of its columns and what is carved out of them. After
+  /// this its densities can be sampled.
+  void volume(ColumnBlock& block, VolumeScratch& scratch) const;
+
   /// What covers the ground at a column whose surface has the unit normal's y component `up`.
   Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel,
                  const DistrictShares& districts = {}) const;
+  /// What covers the ground where rock hangs over it.
+  Material sheltered(float height_m, float up) const;
   /// The rock of the layer at `height_m` in a column of this stack and choice.
   Material rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
   /// That layer.
   LayerPlace layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
 
   struct Terms;  ///< the manifest as the kernels want it (core/world/terms.hpp)
+  const Terms& terms() const { return *terms_; }
 
  private:
   std::unique_ptr<const Terms> terms_;

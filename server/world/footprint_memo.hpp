@@ -24,7 +24,7 @@ struct Footprint {
   friend bool operator==(const Footprint&, const Footprint&) = default;
 };
 
-/// Heights of its columns, halo included, in metres.
+/// Its columns, halo included, are rock below and air from `high_m` on, in metres.
 struct HeightInterval {
   float low_m = 0;
   float high_m = 0;

@@ -13,7 +13,7 @@ namespace talus::server {
 
 namespace {
 
-/// 256 * 48 KiB = 12 MiB: what all sessions have in the making at once stands on these, and then some.
+/// 256 * 64 KiB = 16 MiB: what all sessions have in the making at once stands on these, and then some.
 constexpr std::size_t kColumnBlocks = 256;
 
 }  // namespace
@@ -21,13 +21,14 @@ constexpr std::size_t kColumnBlocks = 256;
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
     : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
 
-void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, ColumnBlock& out) {
+void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, VolumeScratch& volume, ColumnBlock& out) {
   const ColumnName name{world, key.lod, key.x, key.z};
   if (columns_.load(name, out)) return;
   const WorldFunction& function = worlds_[world]->function();
   function.columns(chunk_columns(function, key), out);
+  function.volume(out, volume);
   columns_.store(name, out);
-  footprints_.store({world, key.lod, key.x, key.z}, {out.height_low_m, out.height_high_m});
+  footprints_.store({world, key.lod, key.x, key.z}, {out.rock_below_m, out.air_above_m});
 }
 
 /// What core's build_chunk does, with heights remembered for long and columns for a while.
@@ -40,22 +41,24 @@ ChunkKind TerrainBuilder::load_if_crossed(const PayloadName& name, const WorldFu
   if (const auto known = footprints_.load({name.world, name.key.lod, name.key.x, name.key.z})) {
     if (const ChunkKind kind = kind_within(known->low_m, known->high_m); kind != ChunkKind::kMesh) return kind;
   }
-  load_columns(name.world, name.key, scratch.build.columns);
-  return kind_within(scratch.build.columns.height_low_m, scratch.build.columns.height_high_m);
+  load_columns(name.world, name.key, scratch.build.volume, scratch.build.columns);
+  return kind_within(scratch.build.columns.rock_below_m, scratch.build.columns.air_above_m);
 }
 
 /// A chunk of the finest LOD has no finer neighbour, and its strips are empty.
 ChunkKind TerrainBuilder::sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
   scratch.mesh.clear();
   if (name.key.lod == 0) return ChunkKind::kAir;
-  const ColumnLoader columns = [&](const ChunkKey& key, ColumnBlock& out) { load_columns(name.world, key, out); };
+  const ColumnLoader columns = [&](const ChunkKey& key, ColumnBlock& out) {
+    load_columns(name.world, key, scratch.build.volume, out);
+  };
   build_strip(world, name.key, name.face, columns, scratch.strip, scratch.mesh);
   return scratch.mesh.indices.empty() ? ChunkKind::kAir : ChunkKind::kMesh;
 }
 
 ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
   if (name.format == PayloadFormat::kHeight) {
-    load_columns(name.world, name.key, scratch.build.columns);
+    load_columns(name.world, name.key, scratch.build.volume, scratch.build.columns);
     sample_height_tile(world, scratch.build.columns, scratch.height);
     return ChunkKind::kMesh;
   }

@@ -42,7 +42,7 @@ class TerrainBuilder final : public ChunkBuilder {
   using Bytes = std::expected<std::vector<std::byte>, protocol::CodecError>;
 
   /// Columns under a chunk, remembered or evaluated.
-  void load_columns(std::uint32_t world, const ChunkKey& key, ColumnBlock& out);
+  void load_columns(std::uint32_t world, const ChunkKey& key, VolumeScratch& volume, ColumnBlock& out);
   /// Air, rock, or kMesh with the chunk's columns in `scratch`.
   ChunkKind load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch);

@@ -26,6 +26,7 @@ struct Stage {
     for (const ChunkKey& key : surface_chunks(world, 0, kChunks)) {
       Prepared p{key, {}, {}, {}};
       world.columns(chunk_columns(world, key), p.scratch.columns);
+      world.volume(p.scratch.columns, p.scratch.volume);
       p.box = sample_chunk(world, key, p.scratch);
       if (mesh_chunk(world, key, p.box, p.scratch, p.mesh) == ChunkKind::kMesh) chunks.push_back(std::move(p));
     }
@@ -54,6 +55,9 @@ void run(benchmark::State& state, Body body) {
 
 void ChunkColumns(benchmark::State& state) {
   run(state, [](Stage& s, Prepared& p) { s.world.columns(chunk_columns(s.world, p.key), p.scratch.columns); });
+}
+void ChunkVolume(benchmark::State& state) {
+  run(state, [](Stage& s, Prepared& p) { s.world.volume(p.scratch.columns, p.scratch.volume); });
 }
 void ChunkDensity(benchmark::State& state) {
   run(state, [](Stage& s, Prepared& p) { p.box = sample_chunk(s.world, p.key, p.scratch); });
@@ -91,6 +95,7 @@ void ChunkRuledOut(benchmark::State& state) {
 }
 
 BENCHMARK(ChunkColumns)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ChunkVolume)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ChunkDensity)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ChunkExtraction)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ChunkEncoding)->Unit(benchmark::kMicrosecond);

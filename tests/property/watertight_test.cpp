@@ -44,8 +44,8 @@ class Wire {
     const glm::dvec2 range = world_.height_range_m();
     if (kind_by_heights(world_, key, range.x, range.y) != ChunkKind::kMesh) return {};
     load(key, scratch_.columns);
-    const auto low_m = static_cast<double>(scratch_.columns.height_low_m);
-    const auto high_m = static_cast<double>(scratch_.columns.height_high_m);
+    const auto low_m = static_cast<double>(scratch_.columns.rock_below_m);
+    const auto high_m = static_cast<double>(scratch_.columns.air_above_m);
     if (kind_by_heights(world_, key, low_m, high_m) != ChunkKind::kMesh) return {};
     ChunkMesh mesh;
     if (mesh_chunk(world_, key, sample_chunk(world_, key, scratch_), scratch_, mesh) != ChunkKind::kMesh) return {};
@@ -64,7 +64,10 @@ class Wire {
  private:
   void load(const ChunkKey& key, ColumnBlock& out) {
     ColumnBlock& known = columns_[{key.lod, key.x, 0, key.z}];
-    if (known.stride == 0) world_.columns(chunk_columns(world_, key), known);
+    if (known.stride == 0) {
+      world_.columns(chunk_columns(world_, key), known);
+      world_.volume(known, scratch_.volume);
+    }
     out = known;
   }
 

@@ -102,14 +102,16 @@ TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
   }
 }
 
-TEST(Density, IsNegativeInsideRockAndDependsOnColumnAndHeightAlone) {
+TEST(Density, IsNegativeInsideRockAndDependsOnItsPointAlone) {
   const WorldFunction world{Manifest()};
   ColumnBlock block;
   world.columns({1'000, 2'000, 4, 20, 20, 1.0}, block);
   const auto middle = static_cast<std::int64_t>(block.height_low_m) / 4 * 4;
   const int layers = 24;
   std::vector<float> samples(density_floats(block.grid, layers));
-  const DensityBox box = sample_density(block, middle - 40, layers, samples);
+  VolumeScratch scratch;
+  world.volume(block, scratch);
+  const DensityBox box = sample_density(world, block, middle - 40, layers, {}, scratch, samples);
   for (int j = 0; j < layers; ++j) {
     for (int k = 0; k < 20; ++k) {
       for (int i = 0; i < 20; ++i) {
@@ -117,12 +119,15 @@ TEST(Density, IsNegativeInsideRockAndDependsOnColumnAndHeightAlone) {
             samples[(static_cast<std::size_t>(j) * box.depth + static_cast<std::size_t>(k)) * box.stride +
                     static_cast<std::size_t>(i)];
         const float y = static_cast<float>(middle - 40 + 4 * j);
-        ASSERT_EQ(value < 0.0f, y < block.height_m[index(block, i, k)]);
+        const float height = block.height_m[index(block, i, k)];
+        const float jut = block.has_jut ? block.jut_m[index(block, i, k)] : 0.0f;
+        ASSERT_TRUE(y < height + jut || value >= 0.0f);
+        ASSERT_TRUE(y >= height || !block.spheres.empty() || value < 0.0f);
       }
     }
   }
   std::vector<float> shifted(density_floats(block.grid, 3));
-  const DensityBox part = sample_density(block, middle - 40 + 4 * 5, 3, shifted);
+  const DensityBox part = sample_density(world, block, middle - 40 + 4 * 5, 3, {}, scratch, shifted);
   for (std::size_t n = 0; n < part.depth * part.stride - 16; ++n) {
     if (n % part.stride >= 20) continue;
     ASSERT_EQ(shifted[n], samples[5 * box.depth * box.stride + n]);

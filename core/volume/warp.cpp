@@ -1,0 +1,72 @@
+#include "core/volume/warp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/noise/gradient_noise.hpp"
+#include "core/volume/carve_spheres.hpp"
+
+namespace talus {
+namespace {
+
+float smooth(float low, float high, float v) {
+  const float t = std::clamp((v - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3.0f - (t + t));
+}
+
+/// Places differ in how much of their beds shows: this share at least.
+constexpr float kPatchShare = 0.35f;
+
+/// Noise of one octave, with its slopes, which nobody reads.
+void fill_patch(const WarpControls& controls, const ColumnGrid& grid, std::vector<float>& memory) {
+  const std::size_t count = sample_count(grid);
+  memory.resize(std::max(memory.size(), 3 * count));
+  const std::span<float> all(memory);
+  fractal_noise({controls.patch_m, 1, 2.0, 0.5, controls.seed}, grid, all.subspan(0, count), all.subspan(count, count),
+                all.subspan(2 * count, count));
+}
+
+}  // namespace
+
+bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid& grid, const float* height,
+                  std::vector<float>& patch, float* jut) {
+  const std::size_t stride = row_stride(grid);
+  std::fill_n(jut, sample_count(grid), 0.0f);
+  if (!(controls.reach_m > 0.0f) || lies_on(grid, kStill_m)) return false;
+  const auto tile = [](double at) { return static_cast<std::int64_t>(std::floor(at / kFineTile_m)); };
+  bool any = false;
+  std::int64_t known_x = 0;
+  std::int64_t known_z = 0;
+  bool known = false;
+  bool is_steep = false;
+  for (int k = 0; k < grid.depth; ++k) {
+    const double z_m = static_cast<double>(grid.z_voxel + k * grid.step_voxel) * grid.voxel_m;
+    for (int i = 0; i < grid.width; ++i) {
+      const double x_m = static_cast<double>(grid.x_voxel + i * grid.step_voxel) * grid.voxel_m;
+      if (!known || tile(x_m) != known_x || tile(z_m) != known_z) {
+        known = true;
+        known_x = tile(x_m);
+        known_z = tile(z_m);
+        is_steep = relief.outlook(known_x, known_z).rise > kStillRise;
+      }
+      if (!is_steep) continue;
+      const float gate = relief.gate_at(x_m, z_m);
+      if (!(gate > 0.0f)) continue;
+      const ReliefPoint here = relief.at(x_m, z_m);
+      const float slope = std::sqrt(here.slope_x * here.slope_x + here.slope_z * here.slope_z);
+      const float shown = smooth(controls.slope_low, controls.slope_high, slope) * gate;
+      if (!(shown > 0.0f)) continue;
+      const float reach = controls.reach_m / slope;
+      const float further = relief.height_at(x_m + static_cast<double>(here.slope_x * reach),
+                                             z_m + static_cast<double>(here.slope_z * reach));
+      const std::size_t at = static_cast<std::size_t>(k) * stride + static_cast<std::size_t>(i);
+      if (!any) fill_patch(controls, grid, patch);
+      const float share = kPatchShare + (1.0f - kPatchShare) * smooth(-0.25f, 0.3f, patch[at]);
+      any = true;
+      jut[at] = std::max(further - height[at], 0.0f) * shown * share;
+    }
+  }
+  return any;
+}
+
+}  // namespace talus
