@@ -37,6 +37,22 @@ const std::vector<Site>& PlateGather::near(const PlateBuilder& builder, const gl
   return sites_;
 }
 
+void PlateGather::add_sites(const PlateBuilder& builder, const glm::i64vec2& square) {
+  if (squares_.empty()) squares_.resize(kSquaresEdge * kSquaresEdge);
+  const auto low_bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) % kSquaresEdge; };
+  Square& kept = squares_[low_bits(square.y) * kSquaresEdge + low_bits(square.x)];
+  if (kept.count == 0 || kept.at != square || kept.builder != builder.fingerprint()) {
+    const std::size_t before = around_.size();
+    builder.sites().add_sites(square.x, square.y, around_);
+    kept.at = square;
+    kept.builder = builder.fingerprint();
+    kept.count = around_.size() - before;
+    std::copy_n(&around_[before], kept.count, kept.sites.begin());
+    return;
+  }
+  around_.insert(around_.end(), kept.sites.begin(), kept.sites.begin() + static_cast<std::ptrdiff_t>(kept.count));
+}
+
 /// Which sites: let plate k have a share at p, r its site's distance to p, and let the way from the site to p leave k's
 /// polygon after rho through the fault towards j, h being half the distance of the two sites. Distances to that fault
 /// fall linearly along the way, from h at the site over 0 at rho, so p lies h (r / rho - 1) beyond it. A share there
@@ -54,7 +70,7 @@ void PlateGather::fill(const PlateBuilder& builder) {
   const glm::i64vec2 first{sites.square_of(low_m_.x) - kSquares, sites.square_of(low_m_.y) - kSquares};
   const glm::i64vec2 last{sites.square_of(high_m_.x) + kSquares, sites.square_of(high_m_.y) + kSquares};
   for (std::int64_t z = first.y; z <= last.y; ++z) {
-    for (std::int64_t x = first.x; x <= last.x; ++x) sites.add_sites(x, z, around_);
+    for (std::int64_t x = first.x; x <= last.x; ++x) add_sites(builder, {x, z});
   }
   const glm::i64vec2 middle = (low_m_ + high_m_) / std::int64_t{2};
   const std::size_t tests = std::min(kTestSites, around_.size());

@@ -1,6 +1,8 @@
 // Which plates can have a part in the ground of a box. Pure; private to core/plates.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +20,17 @@ class PlateGather {
   const std::vector<Site>& near(const PlateBuilder& builder, const glm::i64vec2& low_m, const glm::i64vec2& high_m);
 
  private:
+  /// The sites of one square, as PlateSites::add_sites gave them lately.
+  struct Square {
+    glm::i64vec2 at{};
+    std::uint64_t builder = 0;
+    std::size_t count = 0;  ///< 0: none known, as every square has a site
+    std::array<Site, 4> sites;
+  };
+  static constexpr std::size_t kSquaresEdge = 16;
+
   void fill(const PlateBuilder& builder);
+  void add_sites(const PlateBuilder& builder, const glm::i64vec2& square);
 
   bool known_ = false;
   std::uint64_t builder_ = 0;
@@ -26,6 +38,7 @@ class PlateGather {
   glm::i64vec2 high_m_{};
   std::vector<Site> sites_;
   std::vector<Site> around_;
+  std::vector<Square> squares_;  ///< by the low bits of their place
 };
 
 }  // namespace talus

@@ -9,16 +9,16 @@
 
 namespace talus {
 
-/// A table of 16 x 16 plates by the low bits of their cells: plates of one neighbourhood never displace each other, and
-/// of two far ones the later stays. About 5 KB a plate, 1.3 MiB when full; plates are made again in place, so memory
-/// stops growing soon.
+/// A table of 32 x 32 plates by the low bits of their cells: plates of one neighbourhood never displace each other (a
+/// chunk of the coarsest LOD and what reaches into it is 24 cells wide), and of two far ones the later stays. About 5
+/// KB a plate, so 1 MiB for a walk, and 4 MiB once coarse chunks have filled it; plates are made again in place.
 class PlateMemo {
  public:
   /// The plate of `key`, made if it is not here. Valid until the next call.
   const Plate& load(const PlateBuilder& builder, const SiteKey& key);
 
  private:
-  static constexpr std::size_t kEdge = 16;
+  static constexpr std::size_t kEdge = 32;
   struct Slot {
     std::uint64_t builder = 0;  ///< fingerprint
     bool known = false;

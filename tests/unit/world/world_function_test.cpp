@@ -80,6 +80,31 @@ TEST(WorldFunction, IsSharedByThreadsWithoutAnyoneNoticing) {
   EXPECT_EQ(alone, together);
 }
 
+TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
+  Manifest manifest;
+  for (const char* off :
+       {"erosion.octaves", "strata.ledge", "micro.octaves", "coast.cliff_m", "coast.cliff_vary_m", "coast.fin_m",
+        "coast.joint_m", "coast.beach", "cones.land_share", "cones.sea_share", "districts.badlands", "districts.dunes",
+        "districts.mesas", "districts.karst", "districts.glacial"})
+    manifest.values[parameter_index(off)] = 0;
+  manifest.values[parameter_index("coast.shelf")] = 1;
+  const WorldFunction world{manifest};
+  testing::Random random(kSeed);
+  ColumnBlock block;
+  int steep = 0;
+  for (int round = 0; round < 300; ++round) {
+    world.columns({random.whole(-500'000, 500'000), random.whole(-500'000, 500'000), 1, 9, 9, 1.0}, block);
+    const auto height = [&](int i, int k) { return static_cast<double>(block.height_m[index(block, i, k)]); };
+    const std::size_t middle = index(block, 4, 4);
+    const double x = (height(8, 4) - height(0, 4)) / 8;
+    const double z = (height(4, 8) - height(4, 0)) / 8;
+    ASSERT_NEAR(x, static_cast<double>(block.slope_x[middle]), 0.01) << "seed " << kSeed << ", round " << round;
+    ASSERT_NEAR(z, static_cast<double>(block.slope_z[middle]), 0.01) << "seed " << kSeed << ", round " << round;
+    steep += std::hypot(x, z) > 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(steep, 20) << "nothing had a slope";
+}
+
 TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
   const WorldFunction world{Manifest()};
   const glm::dvec2 range = world.height_range_m();
