@@ -45,6 +45,8 @@ struct Arguments {
   FlyOptions fly;
   MapOptions map;
   SectionOptions section;
+  SurveyOptions survey;
+  GalleryOptions gallery;
   std::string checked;
   ExplainOptions explain;
   std::string from;
@@ -127,6 +129,25 @@ void add_section(CLI::App& app, Arguments& arguments) {
   section->callback([&arguments] { arguments.command = [&arguments] { return cli::section(arguments.section); }; });
 }
 
+void add_survey(CLI::App& app, Arguments& arguments) {
+  SurveyOptions& options = arguments.survey;
+  CLI::App* survey = app.add_subcommand("survey", "Figures of a square of a world, and places worth a visit");
+  survey->add_option("--world", options.manifest, "TOML file of the world; else the default world");
+  survey->add_option("--area", options.area, "x,z,km: centre in metres, edge in kilometres")->capture_default_str();
+  survey->add_flag("--json", options.is_json, "one JSON object instead of a table");
+  survey->callback([&arguments] { arguments.command = [&arguments] { return cli::survey(arguments.survey); }; });
+}
+
+void add_gallery(CLI::App& app, Arguments& arguments) {
+  GalleryOptions& options = arguments.gallery;
+  CLI::App* gallery = app.add_subcommand("gallery", "Draw side by side what single parameters do");
+  gallery->add_option("folder", options.folder, "where the PNG files go")->required();
+  gallery->add_option("--size", options.size, "pixels along each edge of one picture")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 1024));
+  gallery->callback([&arguments] { arguments.command = [&arguments] { return cli::gallery(arguments.gallery); }; });
+}
+
 void add_manifest(CLI::App& app, Arguments& arguments) {
   CLI::App* manifest = app.add_subcommand("manifest", "Check, explain or compare the TOML files of worlds");
   manifest->require_subcommand(1);
@@ -157,6 +178,8 @@ int run(int argc, char** argv) {
   add_fly(app, arguments);
   add_map(app, arguments);
   add_section(app, arguments);
+  add_survey(app, arguments);
+  add_gallery(app, arguments);
   add_manifest(app, arguments);
   try {
     app.parse(argc, argv);

@@ -68,6 +68,21 @@ struct SectionOptions {
 };
 ExitCode section(const SectionOptions& options);
 
+struct SurveyOptions {
+  std::string manifest;  ///< file; empty: the default world
+  std::string area = "0,0,256";
+  bool is_json = false;
+};
+/// Prints figures of a square of a world, and places in it that are worth a visit.
+ExitCode survey(const SurveyOptions& options);
+
+struct GalleryOptions {
+  std::string folder;
+  int size = 200;  ///< pixels along each edge of one picture
+};
+/// Draws side by side what single parameters do: one PNG a parameter.
+ExitCode gallery(const GalleryOptions& options);
+
 ExitCode manifest_check(const std::string& file);
 
 struct ExplainOptions {

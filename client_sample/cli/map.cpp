@@ -18,6 +18,8 @@ constexpr double kEdgeKmMax = 4000.0;
 /// A map's centre reaches +-this, in metres: chunk coordinates do, and pixels beyond the edge stay exact.
 constexpr double kCentreMax = 1.0e10;
 
+}  // namespace
+
 std::optional<MapArea> area_of(const std::string& text) {
   const auto numbers = parse_place(text);
   if (!numbers || std::abs(numbers->x) > kCentreMax || std::abs(numbers->y) > kCentreMax || numbers->z < kEdgeKmMin ||
@@ -30,8 +32,6 @@ std::optional<MapArea> area_of(const std::string& text) {
   }
   return MapArea{{numbers->x, numbers->y}, numbers->z * 1000.0};
 }
-
-}  // namespace
 
 bool store_picture(const std::string& path, const Picture& picture) {
   const std::vector<std::byte> png = protocol::encode_png(picture.width, picture.height, picture.rgb);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Picture {
 /// A map of `area` with `size` pixels along each edge: drawn on the lattice whose spacing is nearest below a pixel,
 /// then resampled. Shows progress.
 Picture draw_picture(const WorldFunction& world, const MapArea& area, int size, const MapStyle& style);
+
+/// "x,z,km"; says on standard error what is wrong with it.
+std::optional<MapArea> area_of(const std::string& text);
 
 /// As a PNG; says on standard error what failed.
 bool store_picture(const std::string& path, const Picture& picture);

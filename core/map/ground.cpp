@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/check.hpp"
+#include "core/base/hash.hpp"
 
 namespace talus {
 namespace {
@@ -16,7 +17,8 @@ static_assert(kBlockColumns <= kColumnsMax);
 /// Colours of single columns.
 class Painter {
  public:
-  Painter(const WorldFunction& world, MapLayer layer) : world_(world), layer_(layer), land_(world.manifest()) {
+  Painter(const WorldFunction& world, MapLayer layer, ColumnWorkspace& plates)
+      : world_(world), layer_(layer), land_(world.manifest()), plates_(plates) {
     const glm::dvec2 range = world.height_range_m();
     low_m_ = static_cast<float>(range.x);
     span_m_ = static_cast<float>(range.y - range.x);
@@ -46,6 +48,10 @@ class Painter {
       }
       case MapLayer::kHilliness:
         return heat_light(b.hilliness[at]);
+      case MapLayer::kPlates:
+        return plate(b, i, k, at);
+      case MapLayer::kFaults:
+        return fault(b, i, k, at);
     }
     return {};
   }
@@ -53,6 +59,29 @@ class Painter {
  private:
   static glm::i64vec2 column_voxel(const ColumnBlock& b, int i, int k) {
     return {b.grid.x_voxel + i * b.grid.step_voxel, b.grid.z_voxel + k * b.grid.step_voxel};
+  }
+
+  PlatePlace plate_at(const ColumnBlock& b, int i, int k) const {
+    return world_.plate_at(glm::dvec2(column_voxel(b, i, k)) * b.grid.voxel_m, plates_);
+  }
+
+  glm::vec3 plate(const ColumnBlock& b, int i, int k, std::size_t at) const {
+    const PlatePlace place = plate_at(b, i, k);
+    const auto [x, z] = place.plate.key;
+    const glm::vec3 ground =
+        plate_light(place.traits.kind, mix64(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(z)));
+    const auto line_m = static_cast<float>(1.5 * static_cast<double>(b.grid.step_voxel) * b.grid.voxel_m);
+    // The shore shows through: what is dry is lighter than what is not.
+    const glm::vec3 shown = ground * (b.height_m[at] < 0 ? 0.8f : 1.15f);
+    return std::abs(place.fault_m) < line_m ? fault_light(place.fault) : shown;
+  }
+
+  glm::vec3 fault(const ColumnBlock& b, int i, int k, std::size_t at) const {
+    constexpr float kGlow_m = 3500.0f;
+    const PlatePlace place = plate_at(b, i, k);
+    const float near = std::max(0.0f, 1.0f - std::abs(place.fault_m) / kGlow_m);
+    const glm::vec3 ground = light_of(b.height_m[at] < 0 ? 0x17202B : 0x3A3F42);
+    return ground + (fault_light(place.fault) - ground) * (near * near);
   }
 
   Material material(const ColumnBlock& b, int i, int k, std::size_t at) const {
@@ -65,6 +94,7 @@ class Painter {
   const WorldFunction& world_;
   MapLayer layer_;
   LandPalette land_;
+  ColumnWorkspace& plates_;
   float low_m_ = 0;
   float span_m_ = 1;
 };
@@ -112,7 +142,7 @@ void gather_ground(const WorldFunction& world, const MapView& view, MapLayer lay
   out.wet.assign(pixels, 0.0f);
   out.colour.assign(pixels, glm::vec3(0.0f));
 
-  const Painter painter(world, layer);
+  const Painter painter(world, layer, scratch.plates);
   const std::int64_t step = view.pixel_voxels / view.samples;
   const int columns = width * view.samples;
   const int rows = height * view.samples;

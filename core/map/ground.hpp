@@ -23,6 +23,7 @@ struct Ground {
 /// Working memory of one thread.
 struct MapScratch {
   ColumnBlock columns;
+  ColumnWorkspace plates;
   Ground ground;
 };
 

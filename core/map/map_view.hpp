@@ -19,11 +19,21 @@ struct MapView {
   int height = 0;
 };
 
-enum class MapLayer : std::uint8_t { kShaded, kHeight, kSlope, kMaterial, kLayer, kRidge, kHilliness };
+enum class MapLayer : std::uint8_t {
+  kShaded,
+  kHeight,
+  kSlope,
+  kMaterial,
+  kLayer,
+  kRidge,
+  kHilliness,
+  kPlates,
+  kFaults
+};
 
 /// The word of every layer, by its number.
-inline constexpr std::array<std::string_view, 7> kMapLayerNames{"shaded", "height", "slope",    "materials",
-                                                                "layers", "ridge",  "hilliness"};
+inline constexpr std::array<std::string_view, 9> kMapLayerNames{"shaded", "height",    "slope",  "materials", "layers",
+                                                                "ridge",  "hilliness", "plates", "faults"};
 
 struct MapStyle {
   MapLayer layer = MapLayer::kShaded;

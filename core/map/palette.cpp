@@ -63,6 +63,18 @@ glm::vec3 heat_light(float share) {
   return ramp(kHeat, share);
 }
 
+glm::vec3 plate_light(PlateKind kind, std::uint64_t number) {
+  const float shade = 0.55f + 0.75f * static_cast<float>(mix64(0x9B, number) >> 40) * 0x1p-24f;
+  return shade * (kind == PlateKind::kContinental ? light_of(0x9C9A54) : light_of(0x2F5E94));
+}
+
+glm::vec3 fault_light(FaultClass fault) {
+  // In the order of the classes: red closes, violet dives, cyan and orange part, the quiet ones are pale.
+  static constexpr std::array kColours{light_of(0xE0402A), light_of(0xB030C8), light_of(0xE860A8), light_of(0x38C8D8),
+                                       light_of(0xF8A020), light_of(0xC8C090), light_of(0x7FA8C8), light_of(0xE8E8C0)};
+  return kColours[static_cast<std::size_t>(fault)];
+}
+
 glm::vec3 category_light(std::uint64_t number) {
   const std::uint64_t bits = mix64(0x7A1, number);
   const auto channel = [&](int shift) {

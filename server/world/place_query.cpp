@@ -137,11 +137,14 @@ std::string points_json(const WorldFunction& world, std::span<const glm::dvec2> 
         world.cover(surface_m, static_cast<float>(up), static_cast<float>(ridge), block.hilliness[0], voxel);
     if (material == Material::kRock) material = world.rock(block.stack_m[0], block.choice[0], surface_m, voxel);
     const LayerPlace layer = world.layer(block.stack_m[0], block.choice[0], surface_m, voxel);
+    const PlatePlace plate = world.plate_at(place, block.workspace);
     if (out.back() != '[') out += ',';
-    fmt::format_to(
-        std::back_inserter(out),
-        R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","layer":{},"layer_set":{},"ridge":{:.4f}}})",
-        place.x, place.y, height, slope, info_of(material).name, layer.index, layer.set, ridge);
+    fmt::format_to(std::back_inserter(out),
+                   R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","layer":{},"layer_set":{},)"
+                   R"("plate":"{},{}","plate_kind":"{}","fault":"{}","fault_m":{:.1f},"ridge":{:.4f}}})",
+                   place.x, place.y, height, slope, info_of(material).name, layer.index, layer.set, plate.plate.key.x,
+                   plate.plate.key.z, plate.traits.kind == PlateKind::kContinental ? "continental" : "oceanic",
+                   name_of(plate.fault), std::abs(plate.fault_m), ridge);
   }
   return out + "]}";
 }

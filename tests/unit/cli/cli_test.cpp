@@ -190,6 +190,23 @@ TEST(Cli, DrawsSectionsOfAnyLine) {
   EXPECT_EQ(talus({"section", "--from", "0,0", "--to", "100,0", "--heights", "5,5", "-o", out}), kUsage);
 }
 
+TEST(Cli, SurveysASquareAsATableOrAsJson) {
+  const std::string table = said({"survey", "--area", "0,0,2"}, kDone);
+  EXPECT_THAT(table, testing::HasSubstr("\nland "));
+  const std::string json = said({"survey", "--area", "0,0,2", "--json"}, kDone);
+  EXPECT_TRUE(json.starts_with("{\"world\":\"default\"")) << json.substr(0, 60);
+  EXPECT_TRUE(json.ends_with("]}\n")) << json;
+  EXPECT_EQ(std::ranges::count(json, '{'), std::ranges::count(json, '}'));
+  EXPECT_EQ(talus({"survey", "--area", "0,0"}), kUsage);
+}
+
+TEST(Cli, DrawsAGalleryOfSmallFiles) {
+  const Scratch scratch;
+  EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64"}), kDone);
+  EXPECT_EQ(content(scratch / "scales.png").substr(1, 3), "PNG");
+  EXPECT_EQ(talus({"gallery", scratch / "absent", "--size", "64"}), kFailed);
+}
+
 TEST(MapPicture, IsTheLatticeItselfWherePixelsFitIt) {
   const WorldFunction world{Manifest()};
   const Picture picture = draw_picture(world, {{512, 512}, 1024}, 64, {});
