@@ -1,7 +1,8 @@
 // Composition: finds a world and a place in it, then hands over to the viewer.
 
-import { chooseWorld, fetchManifest, fetchSpawn } from './protocol/server_info';
+import { chooseWorld, fetchHeights, fetchManifest, fetchSpawn } from './protocol/server_info';
 import { ViewRenderer } from './render/view_renderer';
+import { bestYaw, looksAround } from './ui/first_look';
 import { Hud } from './ui/hud';
 import { placeFromQuery } from './ui/place';
 import { type TestDoor, testDoor } from './ui/test_door';
@@ -15,7 +16,6 @@ declare global {
 }
 
 const kStartHeight = 95; // metres above the spawn
-const kLookYaw = 180; // degrees: across the light, which models the land best
 const kLookPitch = -7;
 const kRetry_ms = 3000;
 
@@ -45,7 +45,11 @@ async function start(): Promise<void> {
       const manifest = await fetchManifest(base, await chooseWorld(base, place.world));
       const spawn = place.at ?? (await fetchSpawn(base, manifest.name, 0, 0));
       const at: [number, number, number] = place.at ?? (spawn ? [spawn[0], spawn[1] + kStartHeight, spawn[2]] : [0, 900, 0]);
-      if (Number.isNaN(place.yaw)) place.yaw = kLookYaw;
+      if (Number.isNaN(place.yaw)) {
+        const looks = looksAround(at[0], at[2]);
+        const heights = await fetchHeights(base, manifest.name, looks.flatMap((look) => look.places));
+        place.yaw = bestYaw(looks, heights, place.sunAzimuth);
+      }
       if (Number.isNaN(place.pitch)) place.pitch = kLookPitch;
       const stream = new URL(`v1/worlds/${encodeURIComponent(manifest.name)}/stream`, base);
       stream.protocol = base.protocol === 'https:' ? 'wss:' : 'ws:';

@@ -122,6 +122,17 @@ export function groundFacts(point: unknown, material?: string, heightM?: number)
   return { heightM: height, text: words.filter((word) => word !== '').join(' · ') };
 }
 
+/// Heights at places (x, z) in metres, up to 1000 of them; none when the server does not say.
+export async function fetchHeights(base: URL, world: string, places: readonly (readonly [number, number])[]): Promise<number[]> {
+  try {
+    const xz = places.map((place) => place.map((metres) => metres.toFixed(1)).join(',')).join(';');
+    const points = field(await json(new URL(`v1/worlds/${encodeURIComponent(world)}/points?xz=${xz}`, base)), 'points');
+    return (Array.isArray(points) ? points : []).map((point: unknown) => finite(field(point, 'height_m'), 'height_m'));
+  } catch {
+    return [];
+  }
+}
+
 async function fetchPoint(base: URL, world: string, x: number, z: number, signal: AbortSignal): Promise<unknown> {
   const answer = await json(new URL(`v1/worlds/${encodeURIComponent(world)}/points?xz=${x},${z}`, base), signal);
   const points = field(answer, 'points');
