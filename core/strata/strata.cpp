@@ -5,6 +5,7 @@
 
 #include "core/base/check.hpp"
 #include "core/base/hash.hpp"
+#include "core/strata/layer_search.hpp"
 
 #ifndef TALUS_STRATA_TABLES
 #define TALUS_STRATA_TABLES
@@ -133,13 +134,18 @@ Strata::Strata(const StrataControls& controls) : controls_(controls) {
 }
 
 void Strata::tabulate(const LayerSet& set) {
+  std::vector<float> depths;
+  for (int slice = 0; slice < kSlicesPerSet; ++slice) {
+    depths.push_back((static_cast<float>(slice) + 0.5f) / kSlicesPerMetre);
+  }
+  std::vector<std::int32_t> layers(depths.size());
+  LayerSearch(set).find(depths, layers);
   std::vector<double> sum{0.0};
   double ledge = 0;
   const double step = 1.0 / static_cast<double>(kSlicesPerMetre);
   for (int slice = 0; slice < kSlicesPerSet; ++slice) {
     ledge_.push_back(static_cast<float>(ledge));
-    const float depth = (static_cast<float>(slice) + 0.5f) / kSlicesPerMetre;
-    const auto hardness = static_cast<double>(set.layer(set.index_at(depth)).hardness);
+    const auto hardness = static_cast<double>(set.layer(layers[static_cast<std::size_t>(slice)]).hardness);
     ledge += (hardness - static_cast<double>(kNeutralHardness) - ledge / static_cast<double>(kLeak_m)) * step;
     sum.push_back(sum.back() + hardness);
   }

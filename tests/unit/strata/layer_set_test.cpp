@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/strata/layer_search.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/simd_targets.hpp"
 
 namespace talus {
 namespace {
@@ -37,6 +39,22 @@ TEST(LayerSet, FindsTheLayerThatABinarySearchFinds) {
     ASSERT_EQ(set.index_at(set.top_m(i)), i);
     ASSERT_EQ(set.index_at(std::nextafter(set.top_m(i + 1), 0.0f)), i);
   }
+}
+
+TEST(LayerSearch, FindsForManyDepthsWhatOneSearchFindsOnEveryTarget) {
+  const LayerSet set(5);
+  const LayerSearch search(set);
+  testing::Random random(10);
+  std::vector<float> depths;
+  for (int n = 0; n < 20'003; ++n) {
+    depths.push_back(static_cast<float>(random.real(-100, static_cast<double>(kStackDepth) + 100)));
+  }
+  for (int i = 0; i <= kLayers; ++i) depths.push_back(set.top_m(i));
+  testing::for_each_simd_target([&](const char* target) {
+    std::vector<std::int32_t> layers(depths.size());
+    search.find(depths, layers);
+    for (std::size_t n = 0; n < depths.size(); ++n) ASSERT_EQ(layers[n], set.index_at(depths[n])) << target;
+  });
 }
 
 TEST(LayerSet, GivesEachRockItsProbability) {
