@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/grid/wrap.hpp"
 #include "core/volume/arch.hpp"
 #include "core/volume/draw.hpp"
 
@@ -227,10 +228,15 @@ void gather_spheres(const CarveControls& controls, Relief& relief, CarveMemory& 
   double cell_max = 0;
   for (const CarvePass& pass : controls.passes) cell_max = std::max(cell_max, pass.cell_m);
   const double margin = kCarveReach_m + cell_max;
+  const auto tiles_around = static_cast<std::int64_t>(period_m(grid) / kFineTile_m);
   const auto tile = [](double at) { return static_cast<std::int64_t>(std::floor(at / kFineTile_m)); };
   for (std::int64_t z = tile(low_z - margin); z <= tile(high_z + kCarveReach_m); ++z) {
     for (std::int64_t x = tile(low_x - margin); x <= tile(high_x + kCarveReach_m); ++x) {
-      for (const CarveSphere& s : spheres_of_tile(controls, relief, memory, x, z)) {
+      // Where the world wraps, the seeds of a tile are those of the one that it repeats.
+      const std::int64_t home = wrapped(x, tiles_around);
+      const double turn_m = static_cast<double>(x - home) * kFineTile_m;
+      for (CarveSphere s : spheres_of_tile(controls, relief, memory, home, z)) {
+        s.x_m += turn_m;
         const double reach = static_cast<double>(s.radius_m + kCarveBand_m);
         if (s.x_m + reach < low_x || s.x_m - reach > high_x || s.z_m + reach < low_z || s.z_m - reach > high_z)
           continue;

@@ -16,8 +16,8 @@ constexpr std::array<float, kRoughOctaves> kRoughAmplitude{1.0f, 0.5f};
 /// A wall so far away that no smooth minimum feels it.
 constexpr float kFarAway_m = 1e9f;
 
-Octave rough_octave(const CarveControls& controls, std::size_t n) {
-  return {1.0 / kRoughWave_m[n], mix64(controls.seed, 0x0A11 + n)};
+Octave rough_octave(const CarveControls& controls, const ColumnGrid& grid, std::size_t n) {
+  return octave_on(grid, 1.0 / kRoughWave_m[n], mix64(controls.seed, 0x0A11 + n));
 }
 
 /// Distance to the next multiple of kStill_m.
@@ -44,7 +44,7 @@ Field::Field(const HardnessProfile& profile, const CarveControls& controls, cons
   }
   if (columns.spheres.empty()) return;
   for (std::size_t n = 0; n < kRoughOctaves; ++n) {
-    const Octave octave = rough_octave(controls, n);
+    const Octave octave = rough_octave(controls, grid, n);
     split_axis(octave, 0, grid.x_voxel, grid.step_voxel, grid.voxel_m, grid.width, 0, 2, memory.rough[n].x);
     split_axis(octave, 1, grid.z_voxel, grid.step_voxel, grid.voxel_m, grid.depth, 0, 2, memory.rough[n].z);
   }
@@ -63,7 +63,8 @@ void Field::layer(std::int64_t y_voxel) {
   }
   if (memory_.layer_spheres.empty()) return;
   for (std::size_t n = 0; n < kRoughOctaves; ++n)
-    split_axis(rough_octave(controls_, n), 2, y_voxel, grid.step_voxel, grid.voxel_m, 1, 0, 2, memory_.rough_y[n]);
+    split_axis(rough_octave(controls_, grid, n), 2, y_voxel, grid.step_voxel, grid.voxel_m, 1, 0, 2,
+               memory_.rough_y[n]);
 }
 
 void Field::base_row(int k, float* out) {
