@@ -17,8 +17,8 @@ struct ConeRow {
   const float* dx;  ///< from the centre, in metres
   float dz;
   const float *sway, *sway_x, *sway_z;
-  float *rise, *rise_x, *rise_z;  ///< of the highest cone so far
-  float *calm, *shape, *gullies;  ///< the most so far; not for cinder cones
+  float *rise, *rise_x, *rise_z;         ///< of the highest cone so far
+  float *calm, *shape, *gullies, *bowl;  ///< the most so far; not for cinder cones
   std::size_t width;
 };
 
@@ -28,7 +28,7 @@ struct ConeSumRow {
 };
 
 struct ConeErosionRow {
-  const float *height, *calm, *shape, *gullies;
+  const float *height, *calm, *shape, *gullies, *bowl;
   float *fade, *strength, *hilliness;
 };
 
@@ -114,6 +114,10 @@ void cone_row(const Cone& cone, const ConeRow& r) {
     hn::StoreU(hn::Max(hn::LoadU(d, r.shape + i), shape.v), d, r.shape + i);
     const V worn = smoothstep(0.0f, 0.45f, Jet<V>{shape.v, zero, zero}).v;
     hn::StoreU(hn::Max(hn::LoadU(d, r.gullies + i), hn::Mul(worn, hn::Set(d, cone.gullies))), d, r.gullies + i);
+    if (c > 0) {
+      const V inside = hn::Sub(hn::Set(d, 1.0f), smoothstep(0.85f * c, 1.15f * c, Jet<V>{t.v, zero, zero}).v);
+      hn::StoreU(hn::Max(hn::LoadU(d, r.bowl + i), inside), d, r.bowl + i);
+    }
   }
 }
 
@@ -140,7 +144,9 @@ void cone_erosion_row(const ConeErosionRow& r, std::size_t width) {
     hn::StoreU(mix(hn::LoadU(d, r.fade + i), target, hn::LoadU(d, r.calm + i)), d, r.fade + i);
     const V gullies = hn::LoadU(d, r.gullies + i);
     const V wear = hn::Mul(gullies, rising(hn::LoadU(d, r.height + i), -120.0f, -10.0f));
-    hn::StoreU(hn::Max(hn::LoadU(d, r.strength + i), wear), d, r.strength + i);
+    // Nothing runs out of a crater, and gullies that meet in its middle would cut it like a cake.
+    const V open = hn::Sub(hn::Set(d, 1.0f), hn::LoadU(d, r.bowl + i));
+    hn::StoreU(hn::Mul(hn::Max(hn::LoadU(d, r.strength + i), wear), open), d, r.strength + i);
     hn::StoreU(hn::Max(hn::LoadU(d, r.hilliness + i), gullies), d, r.hilliness + i);
   }
 }
@@ -156,7 +162,7 @@ HWY_EXPORT(cone_erosion_row);
 
 namespace {
 
-enum ConeArray : std::size_t { kRise, kRiseX, kRiseZ, kCalm, kShape, kGullies, kSway, kSwayX, kSwayZ, kArrays };
+enum ConeArray : std::size_t { kRise, kRiseX, kRiseZ, kCalm, kShape, kGullies, kBowl, kSway, kSwayX, kSwayZ, kArrays };
 static_assert(kConeArrays == kArrays);
 
 /// Samples of an axis within `reach_m` of `centre_m`.
@@ -216,7 +222,7 @@ void gather_rise(const ConeControls& c, std::span<const Cone> cones, bool is_cin
       const std::size_t at = k * row_stride(grid) + first;
       raise(cone, {dx.data(), from(grid.z_voxel, k, cone.z_m), arrays.at(kSway, at), arrays.at(kSwayX, at),
                    arrays.at(kSwayZ, at), arrays.at(kRise, at), arrays.at(kRiseX, at), arrays.at(kRiseZ, at),
-                   arrays.at(kCalm, at), arrays.at(kShape, at), arrays.at(kGullies, at), width});
+                   arrays.at(kCalm, at), arrays.at(kShape, at), arrays.at(kGullies, at), arrays.at(kBowl, at), width});
     }
   }
 }
@@ -244,7 +250,7 @@ void raise_cones(const ConeControls& c, std::span<const Cone> cones, const Colum
   TALUS_CHECK(erosion.hilliness.size() >= arrays.count);
   for (std::size_t at = 0; at < arrays.count; at += row_stride(grid)) {
     HWY_DYNAMIC_DISPATCH(cone_erosion_row)
-    ({&relief.height_m[at], arrays.at(kCalm, at), arrays.at(kShape, at), arrays.at(kGullies, at),
+    ({&relief.height_m[at], arrays.at(kCalm, at), arrays.at(kShape, at), arrays.at(kGullies, at), arrays.at(kBowl, at),
       &erosion.fade_target[at], &erosion.strength[at], &erosion.hilliness[at]},
      static_cast<std::size_t>(grid.width));
   }

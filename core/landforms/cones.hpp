@@ -67,7 +67,7 @@ struct ConeErosion {
   std::span<float> fade_target, strength, hilliness;
 };
 /// Arrays of sample_count(grid) floats that `raise_cones` and `heap_cinders` need as workspace.
-inline constexpr std::size_t kConeArrays = 9;
+inline constexpr std::size_t kConeArrays = 10;
 
 /// Puts volcanoes and seamounts on the relief before erosion. Spans hold sample_count(grid) floats, `workspace`
 /// kConeArrays times as many. The result at a column does not depend on cones that do not reach it.

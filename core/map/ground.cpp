@@ -86,8 +86,8 @@ class Painter {
 
   Material material(const ColumnBlock& b, int i, int k, std::size_t at) const {
     const glm::i64vec2 voxel = column_voxel(b, i, k);
-    const Material cover =
-        world_.cover(b.height_m[at], b.steepness[at], b.ridge[at], b.hilliness[at], voxel, b.districts_at(at));
+    const Material cover = world_.cover(
+        {b.height_m[at], b.steepness[at], b.ridge[at], b.hilliness[at], b.beach[at], voxel, b.districts_at(at)});
     return cover == Material::kRock ? world_.rock(b.stack_m[at], b.choice[at], b.height_m[at], voxel) : cover;
   }
 

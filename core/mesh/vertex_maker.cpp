@@ -75,10 +75,11 @@ MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
                                   columns_.grid.z_voxel + (e.z + 1) * columns_.grid.step_voxel};
   const float from_top_m = top_m(columns_, from_column);
   const float over_m = from_top_m + (top_m(columns_, to_column) - from_top_m) * t;
-  Material material = over_m - height_m > kUnderRoof_m
-                          ? world_.sheltered(height_m, normal.y)
-                          : world_.cover(height_m, normal.y, ridge, columns_.hilliness[from_column], column_voxel,
-                                         columns_.districts_at(from_column));
+  Material material =
+      over_m - height_m > kUnderRoof_m
+          ? world_.sheltered(height_m, normal.y)
+          : world_.cover({height_m, normal.y, ridge, columns_.hilliness[from_column], columns_.beach[from_column],
+                          column_voxel, columns_.districts_at(from_column)});
 
   if (material == Material::kRock) {
     const float stack_m =

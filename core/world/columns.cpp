@@ -161,15 +161,14 @@ class ColumnStages {
           arrays.span(arrays.take(kCoastArrays), kCoastArrays));
   }
 
-  /// Roughness under the gullies' scale, the clamp to the world's heights, and the interval of this block's.
+  /// What lies below the gullies' scale, the clamp to the world's heights, and the interval of this block's.
   void surface() {
     Arrays arrays = free_;
-    const NoiseArrays micro = sample(t_.micro, grid_, arrays);
+    add_detail(t_.detail, grid_, {out_.hilliness, out_.ridge, out_.cliff_m, out_.beach},
+               {out_.height_m, out_.slope_x, out_.slope_z}, arrays.span(arrays.take(kDetailArrays), kDetailArrays));
     for (std::size_t at = 0; at < count_; at += stride_) {
-      surface_row(t_,
-                  {&out_.hilliness[at], micro.v + at, micro.x + at, micro.z + at, &out_.height_m[at], &out_.slope_x[at],
-                   &out_.slope_z[at], &out_.steepness[at]},
-                  width_);
+      surface_row({t_.low_m, t_.high_m},
+                  {&out_.slope_x[at], &out_.slope_z[at], &out_.height_m[at], &out_.steepness[at]}, width_);
     }
     out_.height_low_m = out_.height_high_m = out_.height_m[0];
     for (std::size_t at = 0; at < count_; at += stride_) {

@@ -186,7 +186,8 @@ class Caster {
     const auto up = static_cast<float>(out.normal.y);
     out.material = top_m(b, column) - height > kUnderRoof_m
                        ? world_.sheltered(height, up)
-                       : world_.cover(height, up, b.ridge[column], b.hilliness[column], voxel, b.districts_at(column));
+                       : world_.cover({height, up, b.ridge[column], b.hilliness[column], b.beach[column], voxel,
+                                       b.districts_at(column)});
     if (out.material == Material::kRock) out.material = world_.rock(b.stack_m[column], b.choice[column], height, voxel);
     return out;
   }

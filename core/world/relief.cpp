@@ -98,21 +98,14 @@ void add_change_row_target(const ChangeRow& r, std::size_t width) {
   }
 }
 
-void surface_row_target(const WorldFunction::Terms& t, const SurfaceRow& r, std::size_t width) {
+void surface_row_target(const SurfaceLimits& t, const SurfaceRow& r, std::size_t width) {
   const hn::ScalableTag<float> d;
+  const auto one = hn::Set(d, 1.0f);
   for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
-    const auto amplitude =
-        hn::Add(hn::Set(d, t.micro_base_m), hn::Mul(hn::LoadU(d, r.hilliness + i), hn::Set(d, t.micro_high_m)));
-    const auto rough = [&](const float* smooth, const float* micro) {
-      return hn::Add(hn::LoadU(d, smooth + i), hn::Mul(hn::LoadU(d, micro + i), amplitude));
-    };
-    const auto height = rough(r.height, r.micro);
-    const auto slope_x = rough(r.slope_x, r.micro_x);
-    const auto slope_z = rough(r.slope_z, r.micro_z);
+    const auto height = hn::LoadU(d, r.height + i);
     hn::StoreU(hn::Min(hn::Max(height, hn::Set(d, t.low_m)), hn::Set(d, t.high_m)), d, r.height + i);
-    hn::StoreU(slope_x, d, r.slope_x + i);
-    hn::StoreU(slope_z, d, r.slope_z + i);
-    const auto one = hn::Set(d, 1.0f);
+    const auto slope_x = hn::LoadU(d, r.slope_x + i);
+    const auto slope_z = hn::LoadU(d, r.slope_z + i);
     const auto square = hn::Add(hn::Mul(slope_x, slope_x), hn::Mul(slope_z, slope_z));
     hn::StoreU(hn::Div(one, hn::Sqrt(hn::Add(one, square))), d, r.steepness + i);
   }
@@ -145,8 +138,8 @@ void add_change_row(const ChangeRow& row, std::size_t width) {
   HWY_DYNAMIC_DISPATCH(add_change_row_target)(row, width);
 }
 
-void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width) {
-  HWY_DYNAMIC_DISPATCH(surface_row_target)(terms, row, width);
+void surface_row(const SurfaceLimits& limits, const SurfaceRow& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(surface_row_target)(limits, row, width);
 }
 
 }  // namespace talus

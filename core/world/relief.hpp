@@ -49,11 +49,14 @@ struct ChangeRow {
 };
 void add_change_row(const ChangeRow& row, std::size_t width);
 
-/// Roughness on top, the clamp to the world's interval of heights, and the slope's steepness; in place.
-struct SurfaceRow {
-  const float *hilliness, *micro, *micro_x, *micro_z;
-  float *height, *slope_x, *slope_z, *steepness;
+/// The clamp to the world's interval of heights, in place, and the steepness of the slope.
+struct SurfaceLimits {
+  float low_m, high_m;
 };
-void surface_row(const WorldFunction::Terms& terms, const SurfaceRow& row, std::size_t width);
+struct SurfaceRow {
+  const float *slope_x, *slope_z;
+  float *height, *steepness;
+};
+void surface_row(const SurfaceLimits& limits, const SurfaceRow& row, std::size_t width);
 
 }  // namespace talus

@@ -80,6 +80,20 @@ ConeControls cones_of(const Reader& m) {
   return c;
 }
 
+DetailControls detail_of(const Reader& m) {
+  DetailControls c;
+  const int octaves = m.whole("micro.octaves");
+  c.rough = {m.number("micro.wavelength_m"), octaves > 0 ? octaves : 1, 2.0, 0.5, m.seed(8)};
+  c.rough_plain_m = octaves > 0 ? m.number("micro.base_m") : 0;
+  c.rough_hill_m = octaves > 0 ? m.number("micro.hill_m") : 0;
+  c.joint_m = m.number("detail.joint_m");
+  c.boulder_m = m.number("detail.boulder_m");
+  c.boulder_share = m.number("detail.boulder_share");
+  c.rock_slope = m.number("cover.rock_slope");
+  c.seed = m.seed(16);
+  return c;
+}
+
 PlateControls plates_of(const Reader& m) {
   PlateControls p;
   p.size_m = m.number("plates.size_m");
@@ -182,14 +196,11 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.tilt = {m.number("strata.tilt_wavelength_m"), 1, 2.0, 0.5, m.seed(11)};
   t.tilt_m = m.real("strata.tilt_m");
   t.set_choice = {m.number("strata.set_m"), 2, 2.3, 0.35, m.seed(12)};
-  t.district = {m.number("strata.district_m"), 1, 2.0, 0.5, m.seed(13)};
+  t.district = {m.number("strata.district_m"), 3, 3.0, 0.5, m.seed(13)};
   t.resistance = m.real("strata.resistance");
   t.coast = coast_of(m);
   t.cones = cones_of(m);
-  const int micro_octaves = m.whole("micro.octaves");
-  t.micro = {m.number("micro.wavelength_m"), micro_octaves > 0 ? micro_octaves : 1, 2.0, 0.5, m.seed(8)};
-  t.micro_base_m = micro_octaves > 0 ? m.real("micro.base_m") : 0.0f;
-  t.micro_high_m = micro_octaves > 0 ? m.real("micro.hill_m") : 0.0f;
+  t.detail = detail_of(m);
   t.snow_line_m = m.real("cover.snow_line_m");
   t.grass_line_m = m.real("cover.grass_line_m");
   t.beach_m = m.real("cover.beach_m");
@@ -204,9 +215,10 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   const glm::dvec2 shaped_m = karst_bound(t.karst, mesas_bound(t.mesas, badlands_bound(t.badlands, eroded_m)));
   const double moved_m = static_cast<double>(t.terraces->reach_m()) + erosion_bound(t.rills);
   const glm::dvec2 dunes_m = dunes_bound(t.dunes, {shaped_m.x - moved_m, shaped_m.y + moved_m});
-  const glm::dvec2 bound_m = coast_bound(t.coast, dunes_m);
-  t.low_m = static_cast<float>(bound_m.x);
-  t.high_m = static_cast<float>(bound_m.y);
+  const glm::dvec2 coast_m = coast_bound(t.coast, dunes_m);
+  const double detail = detail_bound(t.detail);
+  t.low_m = static_cast<float>(coast_m.x - detail);
+  t.high_m = static_cast<float>(coast_m.y + detail);
   t.manifest = std::move(manifest);
   return t;
 }

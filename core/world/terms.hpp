@@ -6,6 +6,7 @@
 #include "core/erosion/filter.hpp"
 #include "core/landforms/coast.hpp"
 #include "core/landforms/cones.hpp"
+#include "core/landforms/detail.hpp"
 #include "core/landforms/district.hpp"
 #include "core/landforms/dunes.hpp"
 #include "core/landforms/karst.hpp"
@@ -33,11 +34,12 @@ struct WorldFunction::Terms {
   std::int64_t wrap_voxel = 0;  ///< east-west period, 0 for none
   std::unique_ptr<const MacroField> macro;
   ReliefTerms relief{};
-  FractalNoise hills, micro, fold, tilt, set_choice, district;
+  FractalNoise hills, fold, tilt, set_choice, district;
   ErosionControls erosion;
   float frequency_share = 0;
   CoastControls coast;
   ConeControls cones;
+  DetailControls detail;
   std::unique_ptr<const Strata> strata;
   std::unique_ptr<const Terraces> terraces;
   DistrictControls districts;
@@ -51,7 +53,6 @@ struct WorldFunction::Terms {
   CarveControls carve;
   std::uint64_t identity = 0;  ///< of the whole manifest
   float fold_m = 0, tilt_m = 0, resistance = 0;
-  float micro_base_m = 0, micro_high_m = 0;
   float low_m = 0, high_m = 0;  ///< heights of surfaces never leave this
   float snow_line_m = 0, grass_line_m = 0, beach_m = 0, rock_slope = 0;
 };

@@ -87,6 +87,17 @@ inline float top_m(const ColumnBlock& block, std::size_t at) {
 /// lies under the open sky does not lie there.
 inline constexpr float kUnderRoof_m = 2.5f;
 
+/// What decides the cover of a place on the surface.
+struct CoverPlace {
+  float height_m = 0;
+  float up = 1;  ///< y component of the surface's unit normal
+  float ridge = 0;
+  float hilliness = 0;
+  float beach = 0;
+  glm::i64vec2 column_voxel{0, 0};
+  DistrictShares districts{};
+};
+
 /// Working memory of one thread for warp and carving (core/world/volume_scratch.hpp).
 struct VolumeScratch;
 
@@ -114,9 +125,8 @@ class WorldFunction {
   /// this its densities can be sampled.
   void volume(ColumnBlock& block, VolumeScratch& scratch) const;
 
-  /// What covers the ground at a column whose surface has the unit normal's y component `up`.
-  Material cover(float height_m, float up, float ridge, float hilliness, glm::i64vec2 column_voxel,
-                 const DistrictShares& districts = {}) const;
+  /// What covers the ground; kRock where it is bare.
+  Material cover(const CoverPlace& place) const;
   /// What covers the ground where rock hangs over it.
   Material sheltered(float height_m, float up) const;
   /// The rock of the layer at `height_m` in a column of this stack and choice.

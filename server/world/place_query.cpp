@@ -133,8 +133,8 @@ std::string points_json(const WorldFunction& world, std::span<const glm::dvec2> 
     const double ridge = blend(corners(block.ridge), fx, fz);
     const double up = 1.0 / std::sqrt(1.0 + slope * slope);
     const auto surface_m = static_cast<float>(height);
-    Material material =
-        world.cover(surface_m, static_cast<float>(up), static_cast<float>(ridge), block.hilliness[0], voxel);
+    Material material = world.cover({surface_m, static_cast<float>(up), static_cast<float>(ridge), block.hilliness[0],
+                                     block.beach[0], voxel, block.districts_at(0)});
     if (material == Material::kRock) material = world.rock(block.stack_m[0], block.choice[0], surface_m, voxel);
     const LayerPlace layer = world.layer(block.stack_m[0], block.choice[0], surface_m, voxel);
     const PlatePlace plate = world.plate_at(place, block.workspace);

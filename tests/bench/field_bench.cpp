@@ -1,6 +1,7 @@
 // Field kernels by the point, SIMD against plain scalar: `build/bench/bin/talus_bench --benchmark_filter=Field`.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/erosion/filter.hpp"
 #include "core/landforms/coast.hpp"
 #include "core/landforms/cones.hpp"
+#include "core/landforms/detail.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/plates/macro_field.hpp"
 #include "core/world/world_function.hpp"
@@ -124,6 +126,24 @@ void FieldCones(benchmark::State& state) {
   count_points(state, kPoints);
 }
 
+/// A tile of scree.
+void FieldDetail(benchmark::State& state) {
+  const std::size_t count = sample_count(kTile);
+  const std::vector<float> hilliness(count, 0.6f);
+  const std::vector<float> none(count, 0.0f);
+  std::vector<float> height(count, 300.0f);
+  std::vector<float> slope_x(count);
+  std::vector<float> slope_z(count);
+  std::vector<float> workspace(count * kDetailArrays);
+  for (auto _ : state) {
+    std::fill(slope_x.begin(), slope_x.end(), 0.7f);
+    std::fill(slope_z.begin(), slope_z.end(), 0.0f);
+    add_detail({}, kTile, {hilliness, none, none, none}, {height, slope_x, slope_z}, workspace);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, kPoints);
+}
+
 void FieldColumnsTile(benchmark::State& state) {
   const WorldFunction world{Manifest()};
   ColumnBlock block;
@@ -168,6 +188,7 @@ BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosionScalar)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldNoise)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldCoast)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldDetail)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldCones)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldColumnsTile)->Unit(benchmark::kMicrosecond);
 

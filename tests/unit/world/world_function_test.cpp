@@ -85,7 +85,7 @@ TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
   for (const char* off :
        {"erosion.octaves", "strata.ledge", "micro.octaves", "coast.cliff_m", "coast.cliff_vary_m", "coast.fin_m",
         "coast.joint_m", "coast.beach", "cones.land_share", "cones.sea_share", "districts.badlands", "districts.dunes",
-        "districts.mesas", "districts.karst", "districts.glacial"})
+        "districts.mesas", "districts.karst", "districts.glacial", "detail.joint_m", "detail.boulder_share"})
     manifest.values[parameter_index(off)] = 0;
   manifest.values[parameter_index("coast.shelf")] = 1;
   const WorldFunction world{manifest};
@@ -161,10 +161,10 @@ TEST(Density, IsNegativeInsideRockAndDependsOnItsPointAlone) {
 
 TEST(Cover, PutsSandOnShoresSnowOnSummitsAndRockOnWalls) {
   const WorldFunction world{Manifest()};
-  EXPECT_EQ(world.cover(1.0f, 1.0f, 0.0f, 0.1f, {0, 0}), Material::kSand);
-  EXPECT_EQ(world.cover(200.0f, 0.98f, 0.0f, 0.3f, {5, 9}), Material::kGrass);
-  EXPECT_EQ(world.cover(2'000.0f, 0.95f, 0.2f, 1.0f, {5, 9}), Material::kSnow);
-  EXPECT_EQ(world.cover(500.0f, 0.2f, 0.2f, 1.0f, {5, 9}), Material::kRock);
+  EXPECT_EQ(world.cover({1.0f, 1.0f, 0.0f, 0.1f, 1.0f, {0, 0}}), Material::kSand);
+  EXPECT_EQ(world.cover({200.0f, 0.98f, 0.0f, 0.3f, 0.0f, {5, 9}}), Material::kGrass);
+  EXPECT_EQ(world.cover({2'000.0f, 0.95f, 0.2f, 1.0f, 0.0f, {5, 9}}), Material::kSnow);
+  EXPECT_EQ(world.cover({500.0f, 0.2f, 0.2f, 1.0f, 0.0f, {5, 9}}), Material::kRock);
 }
 
 }  // namespace
