@@ -9,11 +9,14 @@
 #include "server/net/server.hpp"
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
+#include "server/world/stored_chunks.hpp"
 #include "server/world/terrain_builder.hpp"
 
 namespace talus::server {
 
 namespace {
+
+constexpr std::size_t kMiB = 1024 * 1024;
 
 std::size_t processors() {
   return std::max(1U, std::thread::hardware_concurrency());
@@ -44,10 +47,11 @@ struct Server::Parts {
       : settings(std::move(with)),
         worlds(std::move(hosted)),
         files(std::move(viewer)),
-        cache(settings.cache_mib * 1024 * 1024),
+        cache(settings.cache_mib * kMiB),
+        stored(worlds),
         pool({worker_threads(settings), settings.cold_queue}),
         builder(worlds, clock, metrics, pool.threads()),
-        chunks(cache, pool, builder, clock, metrics),
+        chunks(cache, stored, pool, builder, clock, metrics),
         net{worlds, files, settings.limits, clock, chunks, pool, metrics, worlds_json(worlds), {}, {}, {}, {}, {}},
         network(net, network_threads(settings)) {}
 
@@ -57,6 +61,7 @@ struct Server::Parts {
   Worlds worlds;
   StaticFiles files;
   MemoryCache cache;
+  StoredChunks stored;
   JobPool pool;
   TerrainBuilder builder;
   ChunkService chunks;
@@ -68,10 +73,19 @@ struct Server::Parts {
   std::string ready_line;
   bool is_stopped = false;
 
+  std::expected<void, std::string> open_disk();
   std::expected<void, std::string> listen();
   void add_gauges();
   void write_ready_line();
 };
+
+std::expected<void, std::string> Server::Parts::open_disk() {
+  if (settings.disk_cache.empty()) return {};
+  auto disk = DiskCache::open({settings.disk_cache, settings.disk_cache_mib * kMiB, pool.threads()}, clock, metrics);
+  if (!disk) return std::unexpected("disk_cache: " + disk.error());
+  stored.attach(std::move(*disk));
+  return {};
+}
 
 std::expected<void, std::string> Server::Parts::listen() {
   const auto listen_on = [&](Listen kind, const std::string& text,
@@ -97,6 +111,14 @@ void Server::Parts::add_gauges() {
   add("talus_cache_bytes_max", "What the memory cache may take",
       [this] { return static_cast<double>(cache.bytes_max()); });
   add("talus_cache_entries", "Chunks in the memory cache", [this] { return static_cast<double>(cache.entries()); });
+  if (const DiskCache* disk = stored.disk(); disk != nullptr) {
+    add("talus_disk_cache_bytes", "Disk cache, as of its last commit",
+        [disk] { return static_cast<double>(disk->bytes()); });
+    add("talus_disk_cache_bytes_max", "What the disk cache may take",
+        [disk] { return static_cast<double>(disk->bytes_max()); });
+    add("talus_disk_cache_pending_bytes", "Chunks waiting to be written to the disk",
+        [disk] { return static_cast<double>(disk->pending_bytes()); });
+  }
   add("talus_queue_stream_jobs", "Chunks waiting to be made, for streams",
       [this] { return static_cast<double>(pool.queued(Lane::kStream)); });
   add("talus_queue_http_jobs", "Jobs waiting, for HTTP",
@@ -127,6 +149,7 @@ std::expected<std::unique_ptr<Server>, std::string> Server::start(const Settings
   auto files = load_viewer(settings.viewer);
   if (!files) return std::unexpected(files.error());
   auto parts = std::make_unique<Parts>(settings, std::move(*worlds), std::move(*files));
+  if (const auto opened = parts->open_disk(); !opened) return std::unexpected(opened.error() + "\n");
   if (const auto listening = parts->listen(); !listening) return std::unexpected(listening.error() + "\n");
   parts->add_gauges();
   parts->write_ready_line();
@@ -170,6 +193,7 @@ void Server::stop() {
   log(LogLevel::kInfo, "draining", {{"connections", std::uint64_t{parts_->net.connections.inside()}}});
   parts_->network.stop(parts_->settings.drain_s);
   parts_->pool.stop();
+  parts_->stored.flush();
   log(LogLevel::kInfo, "stopped");
 }
 

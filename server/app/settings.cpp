@@ -38,6 +38,8 @@ const std::array kTable{
   SettingInfo{"threads", &of_settings<&S::threads>, 0, 1024, "N", "Threads that make terrain; 0 is one for each processor."},
   SettingInfo{"net_threads", &of_settings<&S::net_threads>, 0, 64, "N", "Threads that talk to peers; 0 is one for every four processors."},
   SettingInfo{"cache_mib", &of_settings<&S::cache_mib>, 1, 1048576, "N", "Memory for encoded chunks: more means fewer are made twice."},
+  SettingInfo{"disk_cache", &of_settings<&S::disk_cache>, 0, 0, "DIR", "Folder in which chunks outlive the server; may be deleted at any time. Without it none do."},
+  SettingInfo{"disk_cache_mib", &of_settings<&S::disk_cache_mib>, 1, 16777216, "N", "Disk for chunks: beyond it the longest unused go."},
   SettingInfo{"log_level", &of_settings<&S::log_level>, 0, 0, "LEVEL", "debug, info, warning, error or off; JSON lines on standard error."},
   SettingInfo{"drain_s", &of_settings<&S::drain_s>, 0, 600, "S", "On SIGTERM, how long answers and sessions may take to end."},
   SettingInfo{"cold_queue", &of_settings<&S::cold_queue>, 1, 65536, "N", "Chunks that may wait to be made, for each of HTTP and streams; then 503.", true},

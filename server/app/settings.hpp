@@ -24,6 +24,8 @@ struct Settings {
   std::size_t threads = 0;      ///< 0: one for each processor
   std::size_t net_threads = 0;  ///< 0: one for every four processors, 1 to 8
   std::size_t cache_mib = 256;
+  std::string disk_cache;  ///< folder; empty: none
+  std::size_t disk_cache_mib = 4096;
   std::string viewer;  ///< folder of the browser viewer; empty: none
   std::string log_level = "info";
   double drain_s = 10;

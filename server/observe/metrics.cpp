@@ -39,10 +39,18 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
     {"talus_connection_faults_total", nullptr, nullptr, "Connections ended by an unexpected fault of ours"},
     {"talus_chunk_requests_total", "outcome", "hit", "Requests for chunks by what became of them"},
     {"talus_chunk_requests_total", "outcome", "built", ""},
+    {"talus_chunk_requests_total", "outcome", "stored", ""},
     {"talus_chunk_requests_total", "outcome", "joined", ""},
     {"talus_chunk_requests_total", "outcome", "shed", ""},
     {"talus_chunk_requests_total", "outcome", "cancelled", ""},
     {"talus_chunk_requests_total", "outcome", "failed", ""},
+    {"talus_disk_cache_total", "outcome", "hit", "Entries of the disk cache by what became of them"},
+    {"talus_disk_cache_total", "outcome", "miss", ""},
+    {"talus_disk_cache_total", "outcome", "bad", ""},
+    {"talus_disk_cache_total", "outcome", "stored", ""},
+    {"talus_disk_cache_total", "outcome", "evicted", ""},
+    {"talus_disk_cache_total", "outcome", "shed", ""},
+    {"talus_disk_cache_total", "outcome", "fault", ""},
     {"talus_queries_shed_total", nullptr, nullptr, "Queries of places refused because the pool was full"},
     {"talus_sessions_opened_total", nullptr, nullptr, "Streaming sessions welcomed"},
     {"talus_sessions_refused_total", nullptr, nullptr, "Hellos refused"},
@@ -61,8 +69,8 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
 }};
 
 constexpr std::array<const char*, static_cast<std::size_t>(Hop::kEnd)> kHops{
-    "read_loop",   "next_message", "decode",   "on_message", "request", "load",
-    "build_chunk", "encode_chunk", "draw_map", "encode_map", "publish", "write_loop"};
+    "read_loop",    "next_message", "decode",     "on_message", "request",    "load",        "build_chunk",
+    "encode_chunk", "draw_map",     "encode_map", "publish",    "write_loop", "load_stored", "commit_stored"};
 
 prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
   prometheus::ClientMetric::Histogram out;

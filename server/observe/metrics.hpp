@@ -32,6 +32,8 @@ enum class Hop : std::uint8_t {
   kEncodeMap,
   kPublish,
   kWriteLoop,
+  kLoadStored,    ///< beside the walk: reading the disk instead of building
+  kCommitStored,  ///< behind it: a batch written to the disk
   kEnd
 };
 
@@ -57,10 +59,18 @@ enum class Count : std::uint8_t {
   kConnectionFault,
   kChunkHit,
   kChunkBuilt,
+  kChunkStored,
   kChunkJoined,
   kChunkShed,
   kChunkCancelled,
   kChunkFailed,
+  kDiskHit,
+  kDiskMiss,
+  kDiskBad,
+  kDiskStored,
+  kDiskEvicted,
+  kDiskShed,
+  kDiskFault,
   kQueryShed,
   kSessionsOpened,
   kSessionsRefused,

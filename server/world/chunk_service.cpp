@@ -29,9 +29,9 @@ void ChunkService::Ticket::drop() {
   if (ChunkService* service = std::exchange(service_, nullptr)) service->drop(name_, id_);
 }
 
-ChunkService::ChunkService(MemoryCache& cache, JobPool& pool, ChunkBuilder& builder, const Clock& clock,
-                           Metrics& metrics)
-    : cache_(cache), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
+ChunkService::ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& pool, ChunkBuilder& builder,
+                           const Clock& clock, Metrics& metrics)
+    : cache_(cache), stored_(stored), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
 
 ChunkService::Answer ChunkService::request(const PayloadName& name, Lane lane, double urgency, Done done) {
   const Instant start = clock_.now();
@@ -83,11 +83,17 @@ ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, Lane l
 }
 
 void ChunkService::run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context) {
+  if (std::optional<ChunkPayload> stored = stored_.load(name, context.thread)) {
+    metrics_.add(Count::kChunkStored);
+    return publish(name, flight_id, std::make_shared<const ChunkPayload>(std::move(*stored)));
+  }
   try {
     std::optional<ChunkPayload> payload = builder_.build(name, context.thread, context.token);
     if (!payload) return;  // given up: the flight has left the table already
     metrics_.add(Count::kChunkBuilt);
-    publish(name, flight_id, std::make_shared<const ChunkPayload>(std::move(*payload)));
+    const auto built = std::make_shared<const ChunkPayload>(std::move(*payload));
+    publish(name, flight_id, built);
+    stored_.store(name, built);  // nobody waits for it
   } catch (const std::exception& fault) {
     metrics_.add(Count::kChunkFailed);
     log(LogLevel::kError, "chunk failed",

@@ -1,4 +1,5 @@
-// Chunks for every door, one way: from memory, from the job somebody else has started, or from a job of one's own.
+// Chunks for every door, one way: from memory, from the job somebody else has started, or from a job of one's own,
+// which reads the disk before it builds.
 //
 // Single flight: however many ask for an absent chunk, one job makes it. Every asker holds a ticket; when the last one
 // drops its ticket nobody wants the chunk, and the job is taken back or, if it runs, told to stop. Any thread.
@@ -18,6 +19,7 @@
 #include "server/schedule/clock.hpp"
 #include "server/schedule/job_pool.hpp"
 #include "server/world/chunk_builder.hpp"
+#include "server/world/stored_chunks.hpp"
 
 namespace talus::server {
 
@@ -62,7 +64,8 @@ class ChunkService {
   using Answer = std::variant<PayloadRef, Ticket, ChunkError>;
 
   /// All must outlive the service; the pool must be stopped before the service ends.
-  ChunkService(MemoryCache& cache, JobPool& pool, ChunkBuilder& builder, const Clock& clock, Metrics& metrics);
+  ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& pool, ChunkBuilder& builder, const Clock& clock,
+               Metrics& metrics);
   ChunkService(const ChunkService&) = delete;
   ChunkService& operator=(const ChunkService&) = delete;
 
@@ -91,6 +94,7 @@ class ChunkService {
   void drop(const PayloadName& name, std::uint64_t id);
 
   MemoryCache& cache_;
+  StoredChunks& stored_;
   JobPool& pool_;
   ChunkBuilder& builder_;
   const Clock& clock_;

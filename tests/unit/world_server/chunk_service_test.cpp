@@ -61,9 +61,11 @@ struct Bench {
   SystemClock clock;
   Metrics metrics;
   MemoryCache cache{1 << 20};
+  Worlds worlds;
+  StoredChunks stored{worlds};
   JobPool pool;
   HeldBuilder builder;
-  ChunkService service{cache, pool, builder, clock, metrics};
+  ChunkService service{cache, stored, pool, builder, clock, metrics};
 };
 
 PayloadName name_of(std::int32_t x, std::int32_t lod = 0) {

@@ -1,0 +1,77 @@
+// What a server has made once, the next one serves from its disk.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "tests/sim/running_server.hpp"
+#include "tests/sim/stream_peer.hpp"
+
+namespace talus::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WarmRestart : public testing::Test {
+ protected:
+  WarmRestart() : folder(fs::temp_directory_path() / ("talus-warm-" + std::to_string(::getpid()))) {
+    fs::remove_all(folder);
+    settings.disk_cache = folder.string();
+  }
+  ~WarmRestart() override { fs::remove_all(folder); }
+
+  /// Every chunk message of one view, as it came.
+  static std::map<ChunkKey, std::string> view_of(RunningServer& server) {
+    StreamPeer stream(server->http_address());
+    EXPECT_TRUE(stream.open(std::uint64_t{1} << 40));
+    stream.look_from(0, 700);
+    std::map<ChunkKey, std::string> out;
+    while (auto frame = stream.next_frame()) {
+      const auto message = protocol::decode(std::as_bytes(std::span(frame->bytes)));
+      if (!message || std::holds_alternative<protocol::Idle>(message->message)) break;
+      if (const auto* chunk = std::get_if<protocol::ChunkHead>(&message->message)) out[chunk->key] = frame->bytes;
+    }
+    return out;
+  }
+
+  fs::path folder;
+  Settings settings = quiet_settings();
+};
+
+TEST_F(WarmRestart, ServesAKnownViewWithoutMakingAChunk) {
+  std::map<ChunkKey, std::string> cold;
+  {
+    RunningServer server(settings);
+    cold = view_of(server);
+    EXPECT_GT(server.count(Count::kChunkBuilt), 100U);
+  }
+  ASSERT_GT(cold.size(), 100U);
+  RunningServer server(settings);
+  EXPECT_EQ(view_of(server), cold) << "the same messages, byte for byte";
+  EXPECT_EQ(server.count(Count::kChunkBuilt), 0U);
+  EXPECT_GT(server.count(Count::kChunkStored), 100U);
+}
+
+TEST_F(WarmRestart, MakesAnewWhatTheDiskHasLost) {
+  std::map<ChunkKey, std::string> cold;
+  {
+    RunningServer server(settings);
+    cold = view_of(server);
+    fs::remove_all(folder);
+  }
+  RunningServer server(settings);
+  EXPECT_EQ(view_of(server), cold);
+  EXPECT_GT(server.count(Count::kChunkBuilt), 100U);
+}
+
+TEST_F(WarmRestart, EndsAtTheStartWhenTheFolderCannotBeUsed) {
+  RunningServer first(settings);
+  const auto second = Server::start(settings);
+  ASSERT_FALSE(second.has_value());
+  EXPECT_NE(second.error().find("another server"), std::string::npos) << second.error();
+}
+
+}  // namespace
+}  // namespace talus::server
