@@ -1,6 +1,7 @@
 #include "server/app/server.hpp"
 
 #include <algorithm>
+#include <array>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -119,10 +120,14 @@ void Server::Parts::add_gauges() {
     add("talus_disk_cache_pending_bytes", "Chunks waiting to be written to the disk",
         [disk] { return static_cast<double>(disk->pending_bytes()); });
   }
-  add("talus_queue_stream_jobs", "Chunks waiting to be made, for streams",
-      [this] { return static_cast<double>(pool.queued(Lane::kStream)); });
-  add("talus_queue_http_jobs", "Jobs waiting, for HTTP",
-      [this] { return static_cast<double>(pool.queued(Lane::kHttp)); });
+  constexpr std::array<const char*, kLanes> kLaneGauges{"talus_queue_feet_jobs", "talus_queue_view_jobs",
+                                                        "talus_queue_cover_jobs", "talus_queue_background_jobs"};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    add(kLaneGauges[lane], "Jobs waiting in this lane",
+        [this, lane] { return static_cast<double>(pool.queued(static_cast<Lane>(lane))); });
+  }
+  add("talus_queue_seconds", "When the last of the waiting jobs is expected to start",
+      [this] { return pool.wait_s(); });
   add("talus_flights", "Chunks waiting or being made", [this] { return static_cast<double>(chunks.flights()); });
   add("talus_jobs_failed", "Jobs that let an exception escape", [this] { return static_cast<double>(pool.failed()); });
   add("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });

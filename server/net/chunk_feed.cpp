@@ -24,10 +24,12 @@ constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 }  // namespace
 
 ChunkFeed::ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes,
-                     bool takes_strips, asio::io_context::executor_type executor, std::weak_ptr<void> owner)
+                     bool takes_strips, ClientId client, asio::io_context::executor_type executor,
+                     std::weak_ptr<void> owner)
     : net_(net),
       writer_(writer),
       world_(world),
+      client_(client),
       executor_(std::move(executor)),
       owner_(std::move(owner)),
       viewer_(net.worlds[world]->shape(), credit_bytes, takes_strips) {
@@ -59,7 +61,7 @@ void ChunkFeed::refresh() {
   }
   for (const WantedPiece& moved : change.moved) {
     const auto found = tickets_.find(moved.piece);
-    if (found != tickets_.end()) found->second.set_urgency(moved.urgency);
+    if (found != tickets_.end()) found->second.set_urgency(lane_of(moved), moved.urgency);
   }
   if (change.accepted) writer_.send_control(*change.accepted);
   // Behind the chunks that are queued already: a chunk must not come after its own leave.
@@ -110,7 +112,7 @@ bool ChunkFeed::request_next() {
     name.format = PayloadFormat::kStrip;
     name.face = *piece.face;
   }
-  ChunkService::Answer answer = net_.chunks.request(name, Lane::kStream, next->urgency, std::move(done));
+  ChunkService::Answer answer = net_.chunks.request(name, {client_, lane_of(*next), next->urgency}, std::move(done));
   if (auto* payload = std::get_if<PayloadRef>(&answer)) {
     offer(piece, std::move(*payload));
   } else if (auto* ticket = std::get_if<ChunkService::Ticket>(&answer)) {
@@ -127,6 +129,9 @@ void ChunkFeed::on_piece(const Piece& piece, const ChunkResult& result) {
   if (is_closed_ || tickets_.erase(piece) == 0) return;
   if (result) {
     offer(piece, *result);
+  } else if (result.error() == ChunkError::kBusy) {
+    viewer_.put_back(piece);
+    retry_at_ = net_.clock.now() + seconds(kRetryS);
   } else {
     // It would fail again: the place stays as it is at the client, and the view can still become complete.
     viewer_.deliver(piece, 0);

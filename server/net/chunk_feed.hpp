@@ -17,8 +17,9 @@ class ChunkFeed {
  public:
   /// `net` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way. Counts as a
   /// session from here to its destruction.
+  /// `client` is whose share of the pool its chunks take.
   ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes, bool takes_strips,
-            asio::io_context::executor_type executor, std::weak_ptr<void> owner);
+            ClientId client, asio::io_context::executor_type executor, std::weak_ptr<void> owner);
   ~ChunkFeed();
   ChunkFeed(const ChunkFeed&) = delete;
   ChunkFeed& operator=(const ChunkFeed&) = delete;
@@ -42,6 +43,7 @@ class ChunkFeed {
   NetContext& net_;
   FrameWriter& writer_;
   const std::size_t world_;
+  const ClientId client_;
   const asio::io_context::executor_type executor_;
   const std::weak_ptr<void> owner_;
   Viewer viewer_;

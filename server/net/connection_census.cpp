@@ -6,9 +6,13 @@
 
 namespace talus::server {
 
-std::size_t ConnectionCensus::AddressHash::operator()(const PeerAddress& address) const noexcept {
+ClientId client_of_address(const PeerAddress& address) {
   const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(address);
-  return static_cast<std::size_t>(mix64(halves[0], halves[1]));
+  return mix64(halves[0], halves[1]) | 1U;  // odd: streams have even ones
+}
+
+std::size_t ConnectionCensus::AddressHash::operator()(const PeerAddress& address) const noexcept {
+  return static_cast<std::size_t>(client_of_address(address));
 }
 
 std::pair<ConnectionCensus::Verdict, ConnectionCensus::Place> ConnectionCensus::enter(const PeerAddress& address) {

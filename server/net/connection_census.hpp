@@ -8,10 +8,15 @@
 #include <unordered_map>
 #include <utility>
 
+#include "server/schedule/fair_queue.hpp"
+
 namespace talus::server {
 
 /// An IPv6 address, or an IPv4 address mapped into it. Hosts of one IPv6 network share its first 64 bits.
 using PeerAddress = std::array<unsigned char, 16>;
+
+/// Whose share of the pool a peer's requests over HTTP take: all of an address take one.
+ClientId client_of_address(const PeerAddress& address);
 
 class ConnectionCensus {
  public:

@@ -109,6 +109,9 @@ void write_head(const HttpAnswer& answer, const HeadOptions& options, std::strin
   append_field(out, "Cache-Control", answer.cache_control);
   out.append("Access-Control-Allow-Origin: *\r\nAccess-Control-Expose-Headers: ETag, Talus-Chunk\r\n");
   out.append("X-Content-Type-Options: nosniff\r\n");
+  if (answer.retry_after_s != 0) {
+    fmt::format_to(std::back_inserter(out), "Retry-After: {}\r\n", answer.retry_after_s);
+  }
   out.append(answer.fields);
   if (!options.is_keep_alive) {
     out.append("Connection: close\r\n");

@@ -21,6 +21,7 @@ struct HttpAnswer {
   std::string_view etag;
   std::string_view cache_control;
   std::string_view fields;  ///< further header lines, each with its CR LF
+  int retry_after_s = 0;    ///< when it is worth coming again; 0: not said
   std::string text;
   PayloadRef payload;
   StaticFileRef file;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <functional>
@@ -24,7 +25,9 @@ namespace talus::server {
 namespace {
 
 constexpr std::size_t kReadBytes = 4096;
-constexpr std::string_view kRetry = "Retry-After: 1\r\n";
+/// A standing place looks at thousands of columns, a thousand points at four each.
+constexpr double kQueryCostS = 0.005;
+constexpr double kRetryMaxS = 60;
 /// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
 /// connection and take the answer from under the peer.
 constexpr double kLingerS = 2;
@@ -59,6 +62,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<bool> read_more();
   Awaitable<Next> serve(std::string_view head);
   Awaitable<Next> refuse(HttpFault fault);
+  HttpAnswer unavailable(std::string_view code, std::string_view message) const;
   Awaitable<HttpAnswer> answer_chunk(PayloadName name);
   Awaitable<HttpAnswer> answer_query(std::size_t world, Question question);
   Awaitable<Next> upgrade(std::size_t world, std::string_view head, HttpMethod method);
@@ -206,6 +210,13 @@ Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
   co_return was_sent ? Next::kRequest : Next::kEnd;
 }
 
+/// Says when the queue is expected to be done, so that coming again is worth it.
+HttpAnswer HttpConnection::unavailable(std::string_view code, std::string_view message) const {
+  HttpAnswer answer = error_answer(503, code, message);
+  answer.retry_after_s = static_cast<int>(std::clamp(std::ceil(net_.pool.wait_s()), 1.0, kRetryMaxS));
+  return answer;
+}
+
 Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
   ChunkService::Done done = [self = shared_from_this()](ChunkResult result) mutable {
     HttpConnection& connection = *self;
@@ -215,7 +226,7 @@ Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
       self->bell_.ring();
     });
   };
-  ChunkService::Answer answer = net_.chunks.request(name, Lane::kHttp, 0.0, std::move(done));
+  ChunkService::Answer answer = net_.chunks.request(name, {pass_.client, Lane::kView, 0.0}, std::move(done));
   ChunkResult result = std::unexpected(ChunkError::kBusy);
   if (auto* payload = std::get_if<PayloadRef>(&answer)) {
     result = std::move(*payload);
@@ -227,22 +238,22 @@ Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
     chunk_result_.reset();
   }
   if (!result) {
-    co_return result.error() == ChunkError::kBusy
-        ? error_answer(503, "busy", "too many chunks are being made: come again", kRetry)
-        : error_answer(503, "chunk_failed", "this chunk could not be made", kRetry);
+    co_return result.error() == ChunkError::kBusy ? unavailable("busy", "too many chunks are being made: come again")
+                                                  : unavailable("chunk_failed", "this chunk could not be made");
   }
   co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
 }
 
 Awaitable<HttpAnswer> HttpConnection::answer_query(std::size_t world, Question question) {
   JobPool::Work work = [self = shared_from_this(), question = std::move(question),
-                        &of = *net_.worlds[world]](const JobPool::Context&) mutable {
+                        &of = *net_.worlds[world]](const JobPool::Context& context) mutable {
     HttpAnswer answer;
     try {
-      answer = question(of);
+      answer =
+          context.is_displaced ? self->unavailable("busy", "too many questions at once: come again") : question(of);
     } catch (const std::exception& fault) {
       log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
-      answer = error_answer(503, "query_failed", "this question could not be answered", kRetry);
+      answer = self->unavailable("query_failed", "this question could not be answered");
     }
     HttpConnection& connection = *self;
     asio::post(connection.executor_, [self = std::move(self), answer = std::move(answer)]() mutable {
@@ -251,17 +262,19 @@ Awaitable<HttpAnswer> HttpConnection::answer_query(std::size_t world, Question q
       self->bell_.ring();
     });
   };
-  const JobPool::JobRef job = net_.pool.push(Lane::kHttp, 0.0, std::move(work));
+  const JobPool::Pushed pushed = net_.pool.push({pass_.client, Lane::kView, 0.0, kQueryCostS}, std::move(work));
+  JobPool::tell_displaced(pushed.displaced);
+  const JobPool::JobRef job = pushed.job;
   if (job == nullptr) {
     net_.metrics.add(Count::kQueryShed);
-    co_return error_answer(503, "busy", "too many questions at once: come again", kRetry);
+    co_return unavailable("busy", "too many questions at once: come again");
   }
   begin_wait();
   while (is_waiting_ && !query_result_) co_await bell_.wait();
   is_waiting_ = false;
   if (!query_result_) {
     net_.pool.cancel(job);
-    co_return error_answer(503, "busy", "the answer took too long: come again", kRetry);
+    co_return unavailable("busy", "the answer took too long: come again");
   }
   HttpAnswer answer = std::move(*query_result_);
   query_result_.reset();

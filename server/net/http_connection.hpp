@@ -14,6 +14,7 @@ namespace talus::server {
 struct ConnectionPass {
   Gate::Pass gate;
   ConnectionCensus::Place place;
+  ClientId client = 0;  ///< of its address: what HTTP asks for is shared out by it
 };
 
 /// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `socket`.

@@ -249,14 +249,16 @@ void NetServer::Threads::welcome(Listen kind, Socket socket, IoThread& target) {
   asio::error_code error;
   const auto peer = socket.remote_endpoint(error);
   if (error) return;  // gone already
-  auto [verdict, place] = census.enter(address_of(peer.address()));
+  const PeerAddress address = address_of(peer.address());
+  auto [verdict, place] = census.enter(address);
   if (verdict != ConnectionCensus::Verdict::kWelcome) {
     net.metrics.add(verdict == ConnectionCensus::Verdict::kTooMany ? Count::kConnectionsRefusedTotal
                                                                    : Count::kConnectionsRefusedAddress);
     if (kind != Listen::kTcp) socket.write_some(asio::buffer(kFull), error);
     return;
   }
-  ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(), std::move(place)};
+  ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(), std::move(place),
+                      client_of_address(address)};
   if (!pass.gate) return;
   net.metrics.add(Count::kConnectionsAccepted);
   set_socket_options(socket);

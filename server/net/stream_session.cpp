@@ -216,9 +216,10 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   world_ = named;
   const std::uint16_t version = std::min(hello.version_high, protocol::kVersionHigh);
   const bool takes_strips = version >= protocol::kVersionOfStrips;
-  feed_.emplace(net_, writer_, named, hello.credit_bytes, takes_strips, executor_, weak_from_this());
-  phase_ = Phase::kOpen;
   const std::uint64_t number = net_.session_numbers.fetch_add(1, std::memory_order_relaxed);
+  const ClientId client = 2 * (number + 1);  // even: addresses have odd ones
+  feed_.emplace(net_, writer_, named, hello.credit_bytes, takes_strips, client, executor_, weak_from_this());
+  phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);
   id_ = fmt::format("{:016x}", mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
   log(LogLevel::kInfo, "session opened", {{"session", id_}, {"world", world.name()}, {"client", hello.client}});

@@ -40,8 +40,10 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
     {"talus_chunk_requests_total", "outcome", "hit", "Requests for chunks by what became of them"},
     {"talus_chunk_requests_total", "outcome", "built", ""},
     {"talus_chunk_requests_total", "outcome", "stored", ""},
+    {"talus_chunk_requests_total", "outcome", "ruled_out", ""},
     {"talus_chunk_requests_total", "outcome", "joined", ""},
     {"talus_chunk_requests_total", "outcome", "shed", ""},
+    {"talus_chunk_requests_total", "outcome", "displaced", ""},
     {"talus_chunk_requests_total", "outcome", "cancelled", ""},
     {"talus_chunk_requests_total", "outcome", "failed", ""},
     {"talus_disk_cache_total", "outcome", "hit", "Entries of the disk cache by what became of them"},
@@ -69,8 +71,8 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
 }};
 
 constexpr std::array<const char*, static_cast<std::size_t>(Hop::kEnd)> kHops{
-    "read_loop",    "next_message", "decode",     "on_message", "request",    "load",        "build_chunk",
-    "encode_chunk", "draw_map",     "encode_map", "publish",    "write_loop", "load_stored", "commit_stored"};
+    "read_loop", "next_message", "decode",  "on_message", "request", "load",        "build_chunk",  "encode_chunk",
+    "draw_map",  "encode_map",   "publish", "write_loop", "queue",   "load_stored", "commit_stored"};
 
 prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
   prometheus::ClientMetric::Histogram out;

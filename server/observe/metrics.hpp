@@ -32,6 +32,7 @@ enum class Hop : std::uint8_t {
   kEncodeMap,
   kPublish,
   kWriteLoop,
+  kQueue,         ///< beside the walk: from a job's coming to its start
   kLoadStored,    ///< beside the walk: reading the disk instead of building
   kCommitStored,  ///< behind it: a batch written to the disk
   kEnd
@@ -60,8 +61,10 @@ enum class Count : std::uint8_t {
   kChunkHit,
   kChunkBuilt,
   kChunkStored,
+  kChunkRuledOut,
   kChunkJoined,
   kChunkShed,
+  kChunkDisplaced,
   kChunkCancelled,
   kChunkFailed,
   kDiskHit,

@@ -1,21 +1,12 @@
 #include "server/schedule/job_pool.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/base/check.hpp"
 
 namespace talus::server {
 
-namespace {
-
-/// What one overtaking is worth. Urgencies are distances in chunk edges, 0 to about 100: a job at the far end comes
-/// first after 100 / 0.25 = 400 overtakings.
-constexpr double kUrgencyPerOvertaking = 0.25;
-
-}  // namespace
-
-JobPool::JobPool(JobPoolOptions options) : options_(options) {
+JobPool::JobPool(JobPoolOptions options) : options_(options), queue_(options.queued_per_lane) {
   TALUS_CHECK(options_.threads > 0);
   threads_.reserve(options_.threads);
   for (std::size_t i = 0; i < options_.threads; ++i) {
@@ -27,40 +18,66 @@ JobPool::~JobPool() {
   stop();
 }
 
-JobPool::JobRef JobPool::push(Lane lane, double urgency, Work work) {
+JobPool::Pushed JobPool::push(const JobTerms& terms, Work work) {
   auto job = std::make_shared<Job>();
-  job->urgency.store(urgency, std::memory_order_relaxed);
-  job->lane = lane;
+  job->urgency.store(terms.urgency, std::memory_order_relaxed);
+  job->cost_s = terms.cost_s;
   job->work = std::move(work);
+  Pushed pushed;
   {
     const std::lock_guard lock(mutex_);
-    auto& list = queued_[static_cast<std::size_t>(lane)];
-    if (stopped_ || list.size() >= options_.queued_per_lane) return nullptr;
-    job->popped_at_push = popped_[static_cast<std::size_t>(lane)];
-    list.push_back(job);
+    if (stopped_) return pushed;
+    FairQueue::Pushed queued = queue_.push(job, terms.client, terms.lane);
+    if (!queued.is_queued) return pushed;
+    pushed.displaced = std::static_pointer_cast<Job>(std::move(queued.displaced));
   }
   wake_.notify_one();
-  return job;
+  pushed.job = std::move(job);
+  return pushed;
+}
+
+void JobPool::tell_displaced(const JobRef& job) {
+  if (job == nullptr) return;
+  Work work = std::move(job->work);
+  job->token.cancel();
+  work(Context{0, job->token, 0, job->cost_s, true});
+}
+
+void JobPool::claim(const JobRef& job, ClientId client) {
+  const std::lock_guard lock(mutex_);
+  queue_.claim(job, client);
+}
+
+void JobPool::unclaim(const JobRef& job, ClientId client) {
+  const std::lock_guard lock(mutex_);
+  queue_.unclaim(job, client);
+}
+
+void JobPool::move(const JobRef& job, Lane lane) {
+  const std::lock_guard lock(mutex_);
+  queue_.move(job, lane);
 }
 
 bool JobPool::cancel(const JobRef& job) {
   job->token.cancel();
   Work dropped;  // destroyed outside the lock: it may own anything
   const std::lock_guard lock(mutex_);
-  auto& list = queued_[static_cast<std::size_t>(job->lane)];
-  const auto found = std::find(list.begin(), list.end(), job);
-  if (found == list.end()) return false;
+  if (!queue_.remove(job)) return false;
   dropped = std::move(job->work);
-  list.erase(found);
   return true;
 }
 
+void JobPool::charge(ClientId client, double cost_s) {
+  const std::lock_guard lock(mutex_);
+  queue_.charge(client, cost_s);
+}
+
 void JobPool::stop() {
-  std::array<std::vector<JobRef>, kLanes> dropped;
+  std::vector<FairQueue::ItemRef> dropped;  // destroyed outside the lock
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    dropped.swap(queued_);
+    dropped = queue_.clear();
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) {
@@ -70,33 +87,12 @@ void JobPool::stop() {
 
 std::size_t JobPool::queued(Lane lane) const {
   const std::lock_guard lock(mutex_);
-  return queued_[static_cast<std::size_t>(lane)].size();
+  return queue_.size(lane);
 }
 
-JobPool::JobRef JobPool::pop_most_urgent() {
-  turn_ = (turn_ + 1) % kLanes;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::size_t lane = (turn_ + i) % kLanes;
-    auto& list = queued_[lane];
-    if (list.empty()) continue;
-    const auto value = [&](const JobRef& job) {
-      const auto overtaken = static_cast<double>(popped_[lane] - job->popped_at_push);
-      return job->urgency.load(std::memory_order_relaxed) - kUrgencyPerOvertaking * overtaken;
-    };
-    auto best = list.begin();
-    double best_value = value(*best);
-    for (auto it = list.begin() + 1; it != list.end(); ++it) {
-      if (const double v = value(*it); v < best_value) {
-        best = it;
-        best_value = v;
-      }
-    }
-    JobRef job = std::move(*best);
-    list.erase(best);  // keeps the order of arrival, which decides between equals
-    ++popped_[lane];
-    return job;
-  }
-  return nullptr;
+double JobPool::wait_s() const {
+  const std::lock_guard lock(mutex_);
+  return queue_.cost_s() / static_cast<double>(options_.threads);
 }
 
 void JobPool::run(std::size_t thread) {
@@ -105,15 +101,13 @@ void JobPool::run(std::size_t thread) {
     Work work;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock, [&] {
-        return stopped_ || std::any_of(queued_.begin(), queued_.end(), [](const auto& l) { return !l.empty(); });
-      });
+      wake_.wait(lock, [&] { return stopped_ || !queue_.empty(); });
       if (stopped_) return;
-      job = pop_most_urgent();
+      job = std::static_pointer_cast<Job>(queue_.pop());
       work = std::move(job->work);
     }
     try {
-      work(Context{thread, job->token});
+      work(Context{thread, job->token, job->client(), job->cost_s});
     } catch (...) {
       failed_.fetch_add(1, std::memory_order_relaxed);
     }

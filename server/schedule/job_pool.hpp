@@ -1,12 +1,10 @@
-// A fixed set of threads that evaluate terrain, most urgent job first.
+// A fixed set of threads that evaluate terrain; which job is next is FairQueue's to say, at the moment a thread is
+// free.
 //
-// Urgency moves with the viewers, so an order fixed when a job came in would soon be wrong: jobs wait in a plain list,
-// and a free thread takes the one that is most urgent at that moment. Lists are short by limit (256 a lane: one scan is
-// below a microsecond, a job about a millisecond), so nothing is kept sorted. Jobs that are overtaken grow more urgent,
-// so none starves. Two lanes take turns, so that neither door can shut the other out.
+// Jobs wait in short lists by limit (256 a lane: one look at all of them takes microseconds, a job about a
+// millisecond), so nothing is kept sorted, and an urgency that moves with its viewer is never stale.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
@@ -18,38 +16,49 @@
 #include <vector>
 
 #include "server/schedule/cancel_token.hpp"
+#include "server/schedule/fair_queue.hpp"
 
 namespace talus::server {
-
-enum class Lane : std::uint8_t { kStream, kHttp };
-inline constexpr std::size_t kLanes = 2;
 
 struct JobPoolOptions {
   std::size_t threads = 1;
   std::size_t queued_per_lane = 256;
 };
 
+/// Who wants a job, how soon, and what it is expected to cost.
+struct JobTerms {
+  ClientId client = 0;
+  Lane lane = Lane::kView;
+  double urgency = 0.0;
+  double cost_s = 0.001;
+};
+
 class JobPool {
  public:
-  /// What a job is told: its thread's index below `threads`, for memory kept per thread, and its token.
+  /// What a job is told.
   struct Context {
-    std::size_t thread = 0;
+    std::size_t thread = 0;  ///< index below `threads`, for memory kept per thread
     const CancelToken& token;
+    ClientId client = 0;        ///< whose turn it was
+    double cost_s = 0;          ///< what its terms said
+    bool is_displaced = false;  ///< it had to make room for another client's and must only say so; `thread` is nobody's
   };
   using Work = std::move_only_function<void(const Context&)>;
 
   /// A queued or running job. Shared by its owner and the pool.
-  struct Job {
-    std::atomic<double> urgency{0.0};  ///< smaller is sooner; any thread may move it
+  struct Job : FairQueue::Item {
     CancelToken token;
 
    private:
     friend class JobPool;
-    Lane lane = Lane::kStream;
-    std::uint64_t popped_at_push = 0;
     Work work;
   };
   using JobRef = std::shared_ptr<Job>;
+
+  struct Pushed {
+    JobRef job;        ///< null when the lane is full or the pool has stopped: shed and come again
+    JobRef displaced;  ///< to be given to `tell_displaced` once the caller holds no lock
+  };
 
   explicit JobPool(JobPoolOptions options);
   /// Stops, drops what is queued, waits for what runs.
@@ -57,28 +66,35 @@ class JobPool {
   JobPool(const JobPool&) = delete;
   JobPool& operator=(const JobPool&) = delete;
 
-  /// Null when the lane is full or the pool has stopped: shed and come again.
-  JobRef push(Lane lane, double urgency, Work work);
+  Pushed push(const JobTerms& terms, Work work);
+  /// Runs the work of a displaced job, here, so that it tells whoever waits.
+  static void tell_displaced(const JobRef& job);
+  /// Another client wants a job as well, or no more; at least one must be left. Nothing once it has started.
+  void claim(const JobRef& job, ClientId client);
+  void unclaim(const JobRef& job, ClientId client);
+  /// A job that waits goes on waiting in another lane.
+  void move(const JobRef& job, Lane lane);
   /// Sets the token. True when the job had not started: it never will, and its work is destroyed.
   bool cancel(const JobRef& job);
+  /// A job of this client took so much longer, or shorter, than its terms said.
+  void charge(ClientId client, double cost_s);
   /// Refuses new jobs, destroys the queued, waits for the running. Idempotent; not from a job.
   void stop();
 
   std::size_t threads() const { return options_.threads; }
   std::size_t queued(Lane lane) const;
+  /// When the last of what is queued is expected to start, from now.
+  double wait_s() const;
   /// Jobs that let an exception escape. It ends the job, never the thread.
   std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
 
  private:
   void run(std::size_t thread);
-  JobRef pop_most_urgent();
 
   const JobPoolOptions options_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::array<std::vector<JobRef>, kLanes> queued_;
-  std::array<std::uint64_t, kLanes> popped_{};
-  std::size_t turn_ = 0;
+  FairQueue queue_;
   bool stopped_ = false;
   std::atomic<std::uint64_t> failed_{0};
   std::vector<std::thread> threads_;

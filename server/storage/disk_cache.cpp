@@ -22,6 +22,7 @@ namespace {
 /// nothing is lost with them.
 constexpr std::size_t kBatchEntries = 64;
 constexpr std::size_t kBatchRenewals = 1024;
+constexpr std::size_t kNever = ~std::size_t{0};
 /// What may wait while a batch is being written; beyond it new entries are shed.
 constexpr std::size_t kPendingBytesMax = 16 * 1024 * 1024;
 /// What an entry without payload costs in the queue.
@@ -142,10 +143,10 @@ std::optional<DiskCache::Loaded> DiskCache::load(std::string_view name, std::siz
   return loaded;
 }
 
-void DiskCache::store(std::string_view name, std::uint8_t kind, StoredBytes bytes) {
+void DiskCache::store(std::string_view name, std::uint8_t kind, StoredBytes bytes, Commit commit) {
   if (!is_usable_.load(std::memory_order_relaxed) || bytes->size() > kEntryPayloadBytesMax) return;
   Pending pending{entry_place(name), encode_entry_head(name, kind, *bytes), std::move(bytes)};
-  push(std::move(pending), kBatchEntries);
+  push(std::move(pending), commit == Commit::kNow ? kBatchEntries : kNever);
 }
 
 void DiskCache::push(Pending pending, std::size_t commit_at) {

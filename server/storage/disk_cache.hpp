@@ -55,9 +55,13 @@ class DiskCache {
 
   /// What was stored under `name`, or nothing. `reader` is below `readers`; no two calls with the same at once.
   std::optional<Loaded> load(std::string_view name, std::size_t reader);
+  enum class Commit : std::uint8_t {
+    kNow,   ///< a batch that is complete is committed here, which takes milliseconds
+    kLater  ///< by whoever stores next with kNow, or flushes
+  };
   /// Remembers a payload of at most kEntryPayloadBytesMax, or not: when more is pending than the disk takes, it is
-  /// shed. May commit a batch, which takes milliseconds. Any thread.
-  void store(std::string_view name, std::uint8_t kind, StoredBytes bytes);
+  /// shed. Any thread.
+  void store(std::string_view name, std::uint8_t kind, StoredBytes bytes, Commit commit = Commit::kNow);
   /// Commits what is pending. Any thread.
   void flush();
 

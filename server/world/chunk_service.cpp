@@ -21,8 +21,8 @@ ChunkService::Ticket& ChunkService::Ticket::operator=(Ticket&& other) noexcept {
   return *this;
 }
 
-void ChunkService::Ticket::set_urgency(double urgency) {
-  if (service_ != nullptr) service_->set_urgency(name_, id_, urgency);
+void ChunkService::Ticket::set_urgency(Lane lane, double urgency) {
+  if (service_ != nullptr) service_->set_urgency(name_, id_, lane, urgency);
 }
 
 void ChunkService::Ticket::drop() {
@@ -33,16 +33,35 @@ ChunkService::ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& po
                            const Clock& clock, Metrics& metrics)
     : cache_(cache), stored_(stored), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
 
-ChunkService::Answer ChunkService::request(const PayloadName& name, Lane lane, double urgency, Done done) {
+ChunkService::Answer ChunkService::request(const PayloadName& name, const Asker& asker, Done done) {
   const Instant start = clock_.now();
-  if (PayloadRef payload = load(name)) {
+  JobPool::JobRef displaced;
+  Answer answer;
+  if (PayloadRef cached = load(name)) {
     metrics_.add(Count::kChunkHit);
-    metrics_.record(Hop::kRequest, clock_.now() - start);
-    return payload;
+    answer = std::move(cached);
+  } else if (PayloadRef known = ruled_out(name)) {
+    metrics_.add(Count::kChunkRuledOut);
+    answer = std::move(known);
+  } else {
+    answer = join_or_start(name, asker, std::move(done), displaced);
   }
-  Answer answer = join_or_start(name, lane, urgency, std::move(done));
+  JobPool::tell_displaced(displaced);
   metrics_.record(Hop::kRequest, clock_.now() - start);
   return answer;
+}
+
+/// Most chunks of a view are air or rock that bounds tell at once: they cost no job. What the bounds had to learn first
+/// is remembered like a chunk that was built.
+PayloadRef ChunkService::ruled_out(const PayloadName& name) {
+  const auto known = builder_.ruled_out(name);
+  if (!known) return nullptr;
+  const PayloadRef& payload = known->kind == ChunkKind::kAir ? air_ : rock_;
+  if (known->is_learnt) {
+    cache_.store(name, payload);
+    stored_.store(name, payload, DiskCache::Commit::kLater);
+  }
+  return payload;
 }
 
 PayloadRef ChunkService::load(const PayloadName& name) {
@@ -52,15 +71,15 @@ PayloadRef ChunkService::load(const PayloadName& name) {
   return payload;
 }
 
-ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, Lane lane, double urgency, Done done) {
+ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, const Asker& asker, Done done,
+                                                 JobPool::JobRef& displaced) {
   const std::lock_guard lock(mutex_);
   const std::uint64_t id = ++last_id_;
   if (const auto found = flights_.find(name); found != flights_.end()) {
     Flight& flight = found->second.flight;
-    flight.waiters.push_back({id, urgency, std::move(done)});
-    if (urgency < flight.job->urgency.load(std::memory_order_relaxed)) {
-      flight.job->urgency.store(urgency, std::memory_order_relaxed);
-    }
+    flight.waiters.push_back({id, asker, std::move(done)});
+    pool_.claim(flight.job, asker.client);
+    follow_waiters(flight);
     metrics_.add(Count::kChunkJoined);
     return Ticket{this, name, id};
   }
@@ -69,20 +88,36 @@ ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, Lane l
     metrics_.add(Count::kChunkHit);
     return payload;
   }
-  JobPool::JobRef job =
-      pool_.push(lane, urgency, [this, name, id](const JobPool::Context& context) { run(name, id, context); });
-  if (job == nullptr) {
+  const JobTerms terms{asker.client, asker.lane, asker.urgency, builder_.predicted_s(name)};
+  JobPool::Work work = [this, name, id, pushed = clock_.now()](const JobPool::Context& context) {
+    metrics_.record(Hop::kQueue, clock_.now() - pushed);
+    run(name, id, context);
+  };
+  JobPool::Pushed pushed = pool_.push(terms, std::move(work));
+  displaced = std::move(pushed.displaced);
+  if (pushed.job == nullptr) {
     metrics_.add(Count::kChunkShed);
     return ChunkError::kBusy;
   }
   Entry& entry = flights_[name];
   entry.id = id;
-  entry.flight.job = std::move(job);
-  entry.flight.waiters.push_back({id, urgency, std::move(done)});
+  entry.flight.job = std::move(pushed.job);
+  entry.flight.waiters.push_back({id, asker, std::move(done)});
   return Ticket{this, name, id};
 }
 
 void ChunkService::run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context) {
+  if (context.is_displaced) {
+    metrics_.add(Count::kChunkDisplaced);
+    return publish(name, flight_id, std::unexpected(ChunkError::kBusy));
+  }
+  const Instant start = clock_.now();
+  make(name, flight_id, context);
+  const double took_s = std::chrono::duration<double>(clock_.now() - start).count();
+  pool_.charge(context.client, took_s - context.cost_s);
+}
+
+void ChunkService::make(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context) {
   if (std::optional<ChunkPayload> stored = stored_.load(name, context.thread)) {
     metrics_.add(Count::kChunkStored);
     return publish(name, flight_id, std::make_shared<const ChunkPayload>(std::move(*stored)));
@@ -93,7 +128,7 @@ void ChunkService::run(const PayloadName& name, std::uint64_t flight_id, const J
     metrics_.add(Count::kChunkBuilt);
     const auto built = std::make_shared<const ChunkPayload>(std::move(*payload));
     publish(name, flight_id, built);
-    stored_.store(name, built);  // nobody waits for it
+    stored_.store(name, built, DiskCache::Commit::kNow);  // nobody waits for it
   } catch (const std::exception& fault) {
     metrics_.add(Count::kChunkFailed);
     log(LogLevel::kError, "chunk failed",
@@ -121,18 +156,27 @@ void ChunkService::publish(const PayloadName& name, std::uint64_t flight_id, Chu
   metrics_.record(Hop::kPublish, clock_.now() - start);
 }
 
-void ChunkService::set_urgency(const PayloadName& name, std::uint64_t id, double urgency) {
+void ChunkService::set_urgency(const PayloadName& name, std::uint64_t id, Lane lane, double urgency) {
   const std::lock_guard lock(mutex_);
   const auto found = flights_.find(name);
   if (found == flights_.end()) return;
   Flight& flight = found->second.flight;
-  const auto mine =
-      std::find_if(flight.waiters.begin(), flight.waiters.end(), [&](const Waiter& w) { return w.id == id; });
+  const auto mine = std::ranges::find(flight.waiters, id, &Waiter::id);
   if (mine == flight.waiters.end()) return;
-  mine->urgency = urgency;
-  const auto most = std::min_element(flight.waiters.begin(), flight.waiters.end(),
-                                     [](const Waiter& a, const Waiter& b) { return a.urgency < b.urgency; });
-  flight.job->urgency.store(most->urgency, std::memory_order_relaxed);
+  mine->asker.lane = lane;
+  mine->asker.urgency = urgency;
+  follow_waiters(flight);
+}
+
+/// Under mutex_. Requires a waiter.
+void ChunkService::follow_waiters(const Flight& flight) {
+  Asker foremost = flight.waiters.front().asker;
+  for (const Waiter& waiter : flight.waiters) {
+    foremost.lane = std::min(foremost.lane, waiter.asker.lane);
+    foremost.urgency = std::min(foremost.urgency, waiter.asker.urgency);
+  }
+  flight.job->urgency.store(foremost.urgency, std::memory_order_relaxed);
+  pool_.move(flight.job, foremost.lane);
 }
 
 void ChunkService::drop(const PayloadName& name, std::uint64_t id) {
@@ -142,11 +186,17 @@ void ChunkService::drop(const PayloadName& name, std::uint64_t id) {
   const auto found = flights_.find(name);
   if (found == flights_.end()) return;
   auto& waiters = found->second.flight.waiters;
-  const auto mine = std::find_if(waiters.begin(), waiters.end(), [&](const Waiter& w) { return w.id == id; });
+  const auto mine = std::ranges::find(waiters, id, &Waiter::id);
   if (mine == waiters.end()) return;
   withdrawn = std::move(*mine);
   waiters.erase(mine);
-  if (!waiters.empty()) return;
+  if (!waiters.empty()) {
+    const ClientId client = withdrawn.asker.client;
+    const bool is_last_of_client =
+        std::ranges::none_of(waiters, [&](const Waiter& waiter) { return waiter.asker.client == client; });
+    if (is_last_of_client) pool_.unclaim(found->second.flight.job, client);
+    return follow_waiters(found->second.flight);
+  }
   ended = std::move(found->second.flight);
   flights_.erase(found);
   pool_.cancel(ended.job);

@@ -2,7 +2,8 @@
 // which reads the disk before it builds.
 //
 // Single flight: however many ask for an absent chunk, one job makes it. Every asker holds a ticket; when the last one
-// drops its ticket nobody wants the chunk, and the job is taken back or, if it runs, told to stop. Any thread.
+// drops its ticket nobody wants the chunk, and the job is taken back or, if it runs, told to stop. A job is served when
+// the turn of any of its askers comes (schedule/fair_queue). Any thread.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +25,22 @@
 namespace talus::server {
 
 enum class ChunkError : std::uint8_t {
-  kBusy,   ///< the lane is full: come again
+  kBusy,   ///< the lane is full, or others were due more than this asker: come again
   kFailed  ///< the chunk could not be made
+};
+
+/// Who wants a chunk, and how soon.
+struct Asker {
+  ClientId client = 0;
+  Lane lane = Lane::kView;
+  double urgency = 0.0;  ///< smaller is sooner, within the lane
 };
 
 using ChunkResult = std::expected<PayloadRef, ChunkError>;
 
 class ChunkService {
  public:
-  /// Called once, on a pool thread; must be quick and must not throw: post and return. May still be called after its
+  /// Called once, on any thread; must be quick and must not throw: post and return. May still be called after its
   /// ticket is gone, if the answer was under way.
   using Done = std::move_only_function<void(ChunkResult)>;
 
@@ -46,8 +54,8 @@ class ChunkService {
     Ticket& operator=(const Ticket&) = delete;
     ~Ticket() { drop(); }
 
-    /// Smaller is sooner; a job is as urgent as its most urgent asker.
-    void set_urgency(double urgency);
+    /// A job is in the lane of its foremost asker and as urgent as its most urgent.
+    void set_urgency(Lane lane, double urgency);
     void drop();
 
    private:
@@ -70,7 +78,7 @@ class ChunkService {
   ChunkService& operator=(const ChunkService&) = delete;
 
   /// Requires is_valid(name.key) and a world that exists.
-  Answer request(const PayloadName& name, Lane lane, double urgency, Done done);
+  Answer request(const PayloadName& name, const Asker& asker, Done done);
 
   /// Chunks being made or waiting to be.
   std::size_t flights() const;
@@ -78,7 +86,7 @@ class ChunkService {
  private:
   struct Waiter {
     std::uint64_t id = 0;
-    double urgency = 0.0;
+    Asker asker;
     Done done;
   };
   struct Flight {
@@ -87,10 +95,13 @@ class ChunkService {
   };
 
   PayloadRef load(const PayloadName& name);
-  Answer join_or_start(const PayloadName& name, Lane lane, double urgency, Done done);
+  PayloadRef ruled_out(const PayloadName& name);
+  Answer join_or_start(const PayloadName& name, const Asker& asker, Done done, JobPool::JobRef& displaced);
   void run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
+  void make(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
   void publish(const PayloadName& name, std::uint64_t flight_id, ChunkResult result);
-  void set_urgency(const PayloadName& name, std::uint64_t id, double urgency);
+  void set_urgency(const PayloadName& name, std::uint64_t id, Lane lane, double urgency);
+  void follow_waiters(const Flight& flight);
   void drop(const PayloadName& name, std::uint64_t id);
 
   MemoryCache& cache_;
@@ -99,6 +110,8 @@ class ChunkService {
   ChunkBuilder& builder_;
   const Clock& clock_;
   Metrics& metrics_;
+  const PayloadRef air_ = std::make_shared<const ChunkPayload>(ChunkPayload{ChunkKind::kAir, {}, 0});
+  const PayloadRef rock_ = std::make_shared<const ChunkPayload>(ChunkPayload{ChunkKind::kRock, {}, 0});
 
   mutable std::mutex mutex_;
   std::uint64_t last_id_ = 0;

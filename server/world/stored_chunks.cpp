@@ -6,26 +6,39 @@
 
 namespace talus::server {
 
+namespace {
+
+/// An entry's kind is the chunk's in two bits, and above them the six faces that its surface reaches.
+constexpr unsigned kKindBits = 2;
+constexpr unsigned kKindMask = (1U << kKindBits) - 1;
+static_assert(kKindBits + kChunkFaces <= 8);
+
+}  // namespace
+
 /// Nothing for what is not kept: a glb can be asked for against any origin, so their number has no bound.
 std::optional<std::string> StoredChunks::disk_name(const PayloadName& name) const {
   if (disk_ == nullptr || name.origin != glm::dvec3{}) return std::nullopt;
   const World& world = *worlds_[name.world];
-  return fmt::format("{} {} {} {}/{}/{}/{}", world.hash(), kGeneratorVersion, world.etag(name.format), name.key.lod,
-                     name.key.x, name.key.y, name.key.z);
+  return fmt::format("{} {} {} {}/{}/{}/{} {}", world.hash(), kGeneratorVersion, world.etag(name.format), name.key.lod,
+                     name.key.x, name.key.y, name.key.z, static_cast<unsigned>(name.face));
 }
 
 std::optional<ChunkPayload> StoredChunks::load(const PayloadName& name, std::size_t thread) {
   const auto named = disk_name(name);
   if (!named) return std::nullopt;
   auto loaded = disk_->load(*named, thread);
-  if (!loaded || loaded->kind > static_cast<std::uint8_t>(ChunkKind::kMesh)) return std::nullopt;
-  return ChunkPayload{static_cast<ChunkKind>(loaded->kind), std::move(loaded->bytes)};
+  if (!loaded) return std::nullopt;
+  const unsigned kind = loaded->kind & kKindMask;
+  if (kind > static_cast<unsigned>(ChunkKind::kMesh)) return std::nullopt;
+  return ChunkPayload{static_cast<ChunkKind>(kind), std::move(loaded->bytes),
+                      static_cast<std::uint8_t>(loaded->kind >> kKindBits)};
 }
 
-void StoredChunks::store(const PayloadName& name, const PayloadRef& payload) {
-  if (const auto named = disk_name(name)) {
-    disk_->store(*named, static_cast<std::uint8_t>(payload->kind), StoredBytes(payload, &payload->bytes));
-  }
+void StoredChunks::store(const PayloadName& name, const PayloadRef& payload, DiskCache::Commit commit) {
+  const auto named = disk_name(name);
+  if (!named) return;
+  const unsigned kind = static_cast<unsigned>(payload->kind) | unsigned{payload->faces} << kKindBits;
+  disk_->store(*named, static_cast<std::uint8_t>(kind), StoredBytes(payload, &payload->bytes), commit);
 }
 
 void StoredChunks::flush() {

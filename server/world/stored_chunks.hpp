@@ -26,8 +26,7 @@ class StoredChunks {
 
   /// Reads the disk. `thread` is the index of the calling pool thread.
   std::optional<ChunkPayload> load(const PayloadName& name, std::size_t thread);
-  /// May write a batch to the disk.
-  void store(const PayloadName& name, const PayloadRef& payload);
+  void store(const PayloadName& name, const PayloadRef& payload, DiskCache::Commit commit);
   void flush();
 
  private:

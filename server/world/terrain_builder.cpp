@@ -16,10 +16,43 @@ namespace {
 /// 256 * 64 KiB = 16 MiB: what all sessions have in the making at once stands on these, and then some.
 constexpr std::size_t kColumnBlocks = 256;
 
+/// Whether the key is a chunk's, so that its heights can rule it out.
+bool is_of_chunk(PayloadFormat format) {
+  return format == PayloadFormat::kDraco || format == PayloadFormat::kGlb || format == PayloadFormat::kDensity;
+}
+
+Footprint footprint_of(const PayloadName& name) {
+  return {name.world, name.key.lod, name.key.x, name.key.z};
+}
+
 }  // namespace
 
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
     : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
+
+std::optional<RuledOut> TerrainBuilder::ruled_out(const PayloadName& name) const {
+  if (!is_of_chunk(name.format)) return std::nullopt;
+  const WorldFunction& world = worlds_[name.world]->function();
+  const glm::dvec2 range = world.height_range_m();
+  if (const ChunkKind kind = kind_by_heights(world, name.key, range.x, range.y); kind != ChunkKind::kMesh) {
+    return RuledOut{kind, false};
+  }
+  const auto known = footprints_.load(footprint_of(name));
+  if (!known) return std::nullopt;
+  const ChunkKind kind =
+      kind_by_heights(world, name.key, static_cast<double>(known->low_m), static_cast<double>(known->high_m));
+  if (kind != ChunkKind::kMesh) return RuledOut{kind, true};
+  return std::nullopt;
+}
+
+CostClass TerrainBuilder::cost_class(const PayloadName& name) const {
+  if (name.format == PayloadFormat::kMap) return CostClass::kMapTile;
+  return footprints_.load(footprint_of(name)) ? CostClass::kKnownGround : CostClass::kFreshGround;
+}
+
+double TerrainBuilder::predicted_s(const PayloadName& name) const {
+  return costs_.predicted_s(cost_class(name));
+}
 
 void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, VolumeScratch& volume, ColumnBlock& out) {
   const ColumnName name{world, key.lod, key.x, key.z};
@@ -33,16 +66,11 @@ void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, Volu
 
 /// What core's build_chunk does, with heights remembered for long and columns for a while.
 ChunkKind TerrainBuilder::load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
-  const auto kind_within = [&](float low_m, float high_m) {
-    return kind_by_heights(world, name.key, static_cast<double>(low_m), static_cast<double>(high_m));
-  };
-  const glm::dvec2 range = world.height_range_m();
-  if (const ChunkKind kind = kind_by_heights(world, name.key, range.x, range.y); kind != ChunkKind::kMesh) return kind;
-  if (const auto known = footprints_.load({name.world, name.key.lod, name.key.x, name.key.z})) {
-    if (const ChunkKind kind = kind_within(known->low_m, known->high_m); kind != ChunkKind::kMesh) return kind;
-  }
+  if (const auto known = ruled_out(name)) return known->kind;
   load_columns(name.world, name.key, scratch.build.volume, scratch.build.columns);
-  return kind_within(scratch.build.columns.rock_below_m, scratch.build.columns.air_above_m);
+  const ColumnBlock& columns = scratch.build.columns;
+  return kind_by_heights(world, name.key, static_cast<double>(columns.rock_below_m),
+                         static_cast<double>(columns.air_above_m));
 }
 
 /// A chunk of the finest LOD has no finer neighbour, and its strips are empty.
@@ -99,7 +127,9 @@ ChunkPayload TerrainBuilder::build_map(const PayloadName& name, const WorldFunct
   const Instant drawn = clock_.now();
   metrics_.record(Hop::kDrawMap, drawn - start);
   ChunkPayload out{ChunkKind::kMesh, protocol::encode_png(view.width, view.height, scratch.rgb)};
-  metrics_.record(Hop::kEncodeMap, clock_.now() - drawn);
+  const Instant encoded = clock_.now();
+  metrics_.record(Hop::kEncodeMap, encoded - drawn);
+  costs_.learn(CostClass::kMapTile, std::chrono::duration<double>(encoded - start).count());
   out.bytes.shrink_to_fit();
   return out;
 }
@@ -111,16 +141,22 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   Scratch& scratch = scratch_[thread];
   if (name.format == PayloadFormat::kMap) return build_map(name, world, scratch);
 
+  const CostClass cost = cost_class(name);
   const Instant start = clock_.now();
   const ChunkKind kind = sample(name, world, scratch);
   const Instant built = clock_.now();
   metrics_.record(Hop::kBuildChunk, built - start);
 
-  if (kind != ChunkKind::kMesh) return ChunkPayload{kind, {}, 0};
+  if (kind != ChunkKind::kMesh) {
+    costs_.learn(cost, std::chrono::duration<double>(built - start).count());
+    return ChunkPayload{kind, {}, 0};
+  }
   if (token.is_cancelled()) return std::nullopt;
 
   Bytes bytes = encode(name, world, scratch);
-  metrics_.record(Hop::kEncodeChunk, clock_.now() - built);
+  const Instant encoded = clock_.now();
+  metrics_.record(Hop::kEncodeChunk, encoded - built);
+  costs_.learn(cost, std::chrono::duration<double>(encoded - start).count());
   if (!bytes) throw std::runtime_error("encode_chunk: " + std::string(protocol::describe(bytes.error())));
   // The payload stays for long: what the encoder reserved beyond it is given back.
   bytes->shrink_to_fit();

@@ -14,6 +14,7 @@
 #include "server/observe/metrics.hpp"
 #include "server/schedule/clock.hpp"
 #include "server/world/chunk_builder.hpp"
+#include "server/world/cost_model.hpp"
 #include "server/world/footprint_memo.hpp"
 #include "server/world/world.hpp"
 
@@ -24,6 +25,8 @@ class TerrainBuilder final : public ChunkBuilder {
   /// All must outlive the builder. `threads` is the size of the pool.
   TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads);
 
+  std::optional<RuledOut> ruled_out(const PayloadName& name) const override;
+  double predicted_s(const PayloadName& name) const override;
   std::optional<ChunkPayload> build(const PayloadName& name, std::size_t thread, const CancelToken& token) override;
 
  private:
@@ -48,6 +51,7 @@ class TerrainBuilder final : public ChunkBuilder {
   ChunkKind sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   Bytes encode(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
+  CostClass cost_class(const PayloadName& name) const;
 
   const Worlds& worlds_;
   const Clock& clock_;
@@ -55,6 +59,7 @@ class TerrainBuilder final : public ChunkBuilder {
   std::vector<Scratch> scratch_;
   FootprintMemo footprints_;
   ColumnMemo columns_;
+  CostModel costs_;
 };
 
 }  // namespace talus::server

@@ -9,9 +9,14 @@ namespace talus::server {
 
 namespace {
 
-/// Urgency of the i-th explicit want: ahead of all but the nearest of a view, in the client's own order.
+/// protocol::chunk_urgency of the chunk one stands in, or touches, is at most this, wherever one looks.
+constexpr double kFeetUrgency = 1.5;
+/// From this LOD on a chunk is part of the skyline: 32 m * 2^4 = 512 m, seen from 2 km by default.
+constexpr int kCoverLod = 4;
+
+/// Urgency of the i-th explicit want: behind what a viewer stands on, ahead of the rest, in the client's own order.
 double want_urgency(std::size_t i) {
-  return static_cast<double>(i) / 64.0;
+  return 2.0 + static_cast<double>(i) / 64.0;
 }
 
 /// A strip is small, and what it closes is there already: ahead of chunks as near.
@@ -29,6 +34,11 @@ bool is_less_urgent(const WantedPiece& a, const WantedPiece& b) {
 }
 
 }  // namespace
+
+Lane lane_of(const WantedPiece& wanted) {
+  if (wanted.piece.key.lod == 0 && wanted.urgency <= kFeetUrgency) return Lane::kFeet;
+  return wanted.piece.key.lod < kCoverLod ? Lane::kView : Lane::kCover;
+}
 
 Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips)
     : shape_(shape), takes_strips_(takes_strips), credit_bytes_(credit_bytes) {}

@@ -17,6 +17,7 @@
 #include "core/grid/chunk_face.hpp"
 #include "protocol/interest_area.hpp"
 #include "protocol/message.hpp"
+#include "server/schedule/fair_queue.hpp"
 
 namespace talus::server {
 
@@ -39,6 +40,9 @@ struct WantedPiece {
   double urgency = 0.0;
   friend bool operator==(const WantedPiece&, const WantedPiece&) = default;
 };
+
+/// Where its job waits: what the viewer stands on, what it looks at, or the skyline.
+Lane lane_of(const WantedPiece& wanted);
 
 class Viewer {
  public:

@@ -9,12 +9,16 @@
 namespace talus::server {
 namespace {
 
+JobTerms terms(Lane lane, double urgency, ClientId client = 1) {
+  return {client, lane, urgency, 0.001};
+}
+
 /// A pool of one thread that is kept busy until `open` is called, so that what follows is queued.
 class HeldPool {
  public:
   explicit HeldPool(std::size_t queued_per_lane = 256) : pool({1, queued_per_lane}) {
     std::promise<void> started;
-    pool.push(Lane::kStream, 0.0, [this, &started](const JobPool::Context&) {
+    pool.push(terms(Lane::kView, 0.0), [this, &started](const JobPool::Context&) {
       started.set_value();
       opened_.get_future().wait();
     });
@@ -32,7 +36,7 @@ class HeldPool {
 /// Waits until everything pushed to one lane before has run.
 void finish(JobPool& pool) {
   std::promise<void> done;
-  pool.push(Lane::kStream, 1e9, [&](const JobPool::Context&) { done.set_value(); });
+  pool.push(terms(Lane::kView, 1e9), [&](const JobPool::Context&) { done.set_value(); });
   done.get_future().wait();
 }
 
@@ -40,9 +44,9 @@ TEST(JobPool, RunsTheMostUrgentJobFirst) {
   HeldPool held;
   std::string order;
   const auto append = [&](char c) { return [&order, c](const JobPool::Context&) { order += c; }; };
-  held.pool.push(Lane::kStream, 30.0, append('c'));
-  held.pool.push(Lane::kStream, 10.0, append('a'));
-  held.pool.push(Lane::kStream, 20.0, append('b'));
+  held.pool.push(terms(Lane::kView, 30.0), append('c'));
+  held.pool.push(terms(Lane::kView, 10.0), append('a'));
+  held.pool.push(terms(Lane::kView, 20.0), append('b'));
   held.open();
   finish(held.pool);
   EXPECT_EQ(order, "abc");
@@ -52,8 +56,8 @@ TEST(JobPool, LooksAtUrgencyWhenAThreadIsFreeNotWhenTheJobCameIn) {
   HeldPool held;
   std::string order;
   const auto append = [&](char c) { return [&order, c](const JobPool::Context&) { order += c; }; };
-  const auto first = held.pool.push(Lane::kStream, 1.0, append('a'));
-  held.pool.push(Lane::kStream, 2.0, append('b'));
+  const auto [first, none] = held.pool.push(terms(Lane::kView, 1.0), append('a'));
+  held.pool.push(terms(Lane::kView, 2.0), append('b'));
   first->urgency.store(50.0);
   held.open();
   finish(held.pool);
@@ -64,7 +68,7 @@ TEST(JobPool, RunsEqualJobsInOrderOfArrival) {
   HeldPool held;
   std::string order;
   for (const char c : std::string("abcdef")) {
-    held.pool.push(Lane::kStream, 1.0, [&order, c](const JobPool::Context&) { order += c; });
+    held.pool.push(terms(Lane::kView, 1.0), [&order, c](const JobPool::Context&) { order += c; });
   }
   held.open();
   finish(held.pool);
@@ -74,46 +78,60 @@ TEST(JobPool, RunsEqualJobsInOrderOfArrival) {
 TEST(JobPool, LetsNoJobStarveBehindMoreUrgentOnesThatKeepComing) {
   HeldPool held;
   bool has_run = false;
-  held.pool.push(Lane::kStream, 20.0, [&](const JobPool::Context&) { has_run = true; });
+  held.pool.push(terms(Lane::kView, 20.0), [&](const JobPool::Context&) { has_run = true; });
   // Each pushes a successor that is more urgent than the waiting job: without ageing it would wait for all of them.
   int left = 1000;
   std::promise<int> seen;
   std::function<void(const JobPool::Context&)> next = [&](const JobPool::Context&) {
     if (has_run || --left == 0) return seen.set_value(left);
-    held.pool.push(Lane::kStream, 0.0, next);
+    held.pool.push(terms(Lane::kView, 0.0), next);
   };
-  held.pool.push(Lane::kStream, 0.0, next);
+  held.pool.push(terms(Lane::kView, 0.0), next);
   held.open();
   EXPECT_GT(seen.get_future().get(), 800);
 }
 
-TEST(JobPool, TakesTurnsBetweenLanes) {
-  HeldPool held;
-  std::string order;
-  for (int i = 0; i < 3; ++i) held.pool.push(Lane::kStream, 0.0, [&](const JobPool::Context&) { order += 's'; });
-  for (int i = 0; i < 3; ++i) held.pool.push(Lane::kHttp, 99.0, [&](const JobPool::Context&) { order += 'h'; });
+TEST(JobPool, TellsADisplacedJobWhenItsPusherIsReady) {
+  HeldPool held(2);
+  int displaced = 0;
+  const auto count = [&](const JobPool::Context& context) { displaced += context.is_displaced ? 1 : 0; };
+  const auto greedy_1 = held.pool.push(terms(Lane::kView, 0.0, 7), count);
+  const auto greedy_2 = held.pool.push(terms(Lane::kView, 1.0, 7), count);
+  const auto modest = held.pool.push(terms(Lane::kView, 9.0, 8), count);
+  ASSERT_NE(modest.job, nullptr);
+  ASSERT_EQ(modest.displaced, greedy_2.job);
+  EXPECT_EQ(displaced, 0);
+  JobPool::tell_displaced(modest.displaced);
+  EXPECT_EQ(displaced, 1);
+  EXPECT_FALSE(held.pool.cancel(greedy_2.job)) << "it is not queued any more";
   held.open();
-  finish(held.pool);
-  EXPECT_TRUE(order == "hshshs" || order == "shshsh") << order;
+}
+
+TEST(JobPool, ForeseesWhenItsQueueIsDone) {
+  HeldPool held;
+  const auto nothing = [](const JobPool::Context&) {};
+  for (int i = 0; i < 20; ++i) held.pool.push({1, Lane::kView, 0.0, 0.1}, nothing);
+  EXPECT_NEAR(held.pool.wait_s(), 2.0, 1e-9);
+  held.open();
 }
 
 TEST(JobPool, RefusesWhenALaneIsFullButKeepsTheOtherOpen) {
   HeldPool held(2);
   const auto nothing = [](const JobPool::Context&) {};
-  EXPECT_NE(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
-  EXPECT_NE(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
-  EXPECT_EQ(held.pool.push(Lane::kStream, 0.0, nothing), nullptr);
-  EXPECT_EQ(held.pool.queued(Lane::kStream), 2U);
-  EXPECT_NE(held.pool.push(Lane::kHttp, 0.0, nothing), nullptr);
+  EXPECT_NE(held.pool.push(terms(Lane::kView, 0.0), nothing).job, nullptr);
+  EXPECT_NE(held.pool.push(terms(Lane::kView, 0.0), nothing).job, nullptr);
+  EXPECT_EQ(held.pool.push(terms(Lane::kView, 0.0), nothing).job, nullptr);
+  EXPECT_EQ(held.pool.queued(Lane::kView), 2U);
+  EXPECT_NE(held.pool.push(terms(Lane::kCover, 0.0), nothing).job, nullptr);
   held.open();
 }
 
 TEST(JobPool, NeverStartsACancelledJobAndFreesItsPlace) {
   HeldPool held(1);
   bool has_run = false;
-  const auto job = held.pool.push(Lane::kStream, 0.0, [&](const JobPool::Context&) { has_run = true; });
+  const auto [job, none] = held.pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context&) { has_run = true; });
   EXPECT_TRUE(held.pool.cancel(job));
-  EXPECT_EQ(held.pool.queued(Lane::kStream), 0U);
+  EXPECT_EQ(held.pool.queued(Lane::kView), 0U);
   held.open();
   finish(held.pool);
   EXPECT_FALSE(has_run);
@@ -124,7 +142,7 @@ TEST(JobPool, TellsARunningJobThatItIsCancelled) {
   std::promise<void> started;
   std::promise<void> cancelled;
   std::promise<bool> seen;
-  const auto job = pool.push(Lane::kStream, 0.0, [&](const JobPool::Context& context) {
+  const auto [job, none] = pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context& context) {
     started.set_value();
     cancelled.get_future().wait();
     seen.set_value(context.token.is_cancelled());
@@ -137,7 +155,7 @@ TEST(JobPool, TellsARunningJobThatItIsCancelled) {
 
 TEST(JobPool, OutlivesAJobThatThrows) {
   JobPool pool({1, 8});
-  pool.push(Lane::kStream, 0.0, [](const JobPool::Context&) { throw std::runtime_error("broken"); });
+  pool.push(terms(Lane::kView, 0.0), [](const JobPool::Context&) { throw std::runtime_error("broken"); });
   finish(pool);
   EXPECT_EQ(pool.failed(), 1U);
 }
@@ -149,7 +167,7 @@ TEST(JobPool, GivesEveryThreadAnIndexOfItsOwn) {
   std::atomic<bool> is_shared{false};
   std::promise<void> done;
   for (int i = 0; i < 60; ++i) {
-    pool.push(Lane::kStream, 0.0, [&](const JobPool::Context& context) {
+    pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context& context) {
       if (inside.at(context.thread).fetch_add(1) != 0) is_shared = true;
       inside.at(context.thread).fetch_sub(1);
       if (left.fetch_sub(1) == 1) done.set_value();
@@ -162,11 +180,11 @@ TEST(JobPool, GivesEveryThreadAnIndexOfItsOwn) {
 TEST(JobPool, DropsWhatIsQueuedWhenItStops) {
   HeldPool held;
   const auto owned = std::make_shared<int>(1);
-  held.pool.push(Lane::kStream, 0.0, [owned](const JobPool::Context&) {});
+  held.pool.push(terms(Lane::kView, 0.0), [owned](const JobPool::Context&) {});
   held.open();
   held.pool.stop();
   EXPECT_EQ(owned.use_count(), 1);
-  EXPECT_EQ(held.pool.push(Lane::kStream, 0.0, [](const JobPool::Context&) {}), nullptr);
+  EXPECT_EQ(held.pool.push(terms(Lane::kView, 0.0), [](const JobPool::Context&) {}).job, nullptr);
 }
 
 }  // namespace

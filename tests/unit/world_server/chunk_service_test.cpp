@@ -74,6 +74,9 @@ PayloadName name_of(std::int32_t x, std::int32_t lod = 0) {
   return name;
 }
 
+constexpr Asker kHttp{1, Lane::kView, 0.0};
+constexpr Asker kStream{2, Lane::kView, 0.0};
+
 using Ticket = ChunkService::Ticket;
 
 TEST(ChunkService, BuildsOnceHoweverManyAsk) {
@@ -83,7 +86,7 @@ TEST(ChunkService, BuildsOnceHoweverManyAsk) {
   std::promise<void> all;
   std::vector<ChunkService::Answer> answers;
   for (int i = 0; i < kAskers; ++i) {
-    answers.push_back(bench.service.request(name_of(1), Lane::kHttp, 0.0, [&](const ChunkResult& result) {
+    answers.push_back(bench.service.request(name_of(1), kHttp, [&](const ChunkResult& result) {
       EXPECT_TRUE(result.has_value());
       if (answered.fetch_add(1) + 1 == kAskers) all.set_value();
     }));
@@ -100,33 +103,33 @@ TEST(ChunkService, AnswersFromMemoryWithoutCallingBack) {
   Bench bench;
   bench.builder.open();
   std::promise<void> done;
-  const auto first = bench.service.request(name_of(1), Lane::kHttp, 0.0, [&](const ChunkResult&) { done.set_value(); });
+  const auto first = bench.service.request(name_of(1), kHttp, [&](const ChunkResult&) { done.set_value(); });
   done.get_future().wait();
   const auto second =
-      bench.service.request(name_of(1), Lane::kHttp, 0.0, [](const ChunkResult&) { ADD_FAILURE() << "called back"; });
+      bench.service.request(name_of(1), kHttp, [](const ChunkResult&) { ADD_FAILURE() << "called back"; });
   EXPECT_TRUE(std::holds_alternative<PayloadRef>(second));
   EXPECT_EQ(bench.metrics.value(Count::kChunkHit), 1U);
 }
 
 TEST(ChunkService, TakesAJobBackWhenItsLastAskerLosesInterest) {
   Bench bench;
-  const auto busy = bench.service.request(name_of(0), Lane::kHttp, 0.0, [](const ChunkResult&) {});
+  const auto busy = bench.service.request(name_of(0), kHttp, [](const ChunkResult&) {});
   bench.builder.wait_for_start();
   {
-    const auto a = bench.service.request(name_of(1), Lane::kStream, 0.0, [](const ChunkResult&) {});
+    const auto a = bench.service.request(name_of(1), kStream, [](const ChunkResult&) {});
     {
-      const auto b = bench.service.request(name_of(1), Lane::kStream, 0.0, [](const ChunkResult&) {});
+      const auto b = bench.service.request(name_of(1), kStream, [](const ChunkResult&) {});
     }
-    EXPECT_EQ(bench.pool.queued(Lane::kStream), 1U) << "one still wants it";
+    EXPECT_EQ(bench.pool.queued(Lane::kView), 1U) << "one still wants it";
   }
-  EXPECT_EQ(bench.pool.queued(Lane::kStream), 0U);
+  EXPECT_EQ(bench.pool.queued(Lane::kView), 0U);
   EXPECT_EQ(bench.metrics.value(Count::kChunkCancelled), 1U);
 }
 
 TEST(ChunkService, TellsARunningJobToStopWhenNobodyWantsIt) {
   Bench bench;
   {
-    const auto answer = bench.service.request(name_of(1), Lane::kStream, 0.0, [](const ChunkResult&) {});
+    const auto answer = bench.service.request(name_of(1), kStream, [](const ChunkResult&) {});
     bench.builder.wait_for_start();
   }
   while (bench.builder.cancelled == 0) {
@@ -140,12 +143,12 @@ TEST(ChunkService, TellsARunningJobToStopWhenNobodyWantsIt) {
 TEST(ChunkService, StartsAnewWhenAChunkIsWantedAgainWhileItsOldJobIsStopping) {
   Bench bench;
   {
-    const auto given_up = bench.service.request(name_of(1), Lane::kStream, 0.0, [](const ChunkResult&) {});
+    const auto given_up = bench.service.request(name_of(1), kStream, [](const ChunkResult&) {});
     bench.builder.wait_for_start();
   }
   std::promise<bool> done;
-  const auto again = bench.service.request(name_of(1), Lane::kStream, 0.0,
-                                           [&](const ChunkResult& r) { done.set_value(r.has_value()); });
+  const auto again =
+      bench.service.request(name_of(1), kStream, [&](const ChunkResult& r) { done.set_value(r.has_value()); });
   ASSERT_TRUE(std::holds_alternative<Ticket>(again));
   bench.builder.open();
   EXPECT_TRUE(done.get_future().get());
@@ -153,14 +156,14 @@ TEST(ChunkService, StartsAnewWhenAChunkIsWantedAgainWhileItsOldJobIsStopping) {
 
 TEST(ChunkService, RefusesColdChunksWhenTheLaneIsFull) {
   Bench bench(2);
-  const auto running = bench.service.request(name_of(0), Lane::kHttp, 0.0, [](const ChunkResult&) {});
+  const auto running = bench.service.request(name_of(0), kHttp, [](const ChunkResult&) {});
   bench.builder.wait_for_start();
-  const auto a = bench.service.request(name_of(1), Lane::kHttp, 0.0, [](const ChunkResult&) {});
-  const auto b = bench.service.request(name_of(2), Lane::kHttp, 0.0, [](const ChunkResult&) {});
-  const auto c = bench.service.request(name_of(3), Lane::kHttp, 0.0, [](const ChunkResult&) {});
+  const auto a = bench.service.request(name_of(1), kHttp, [](const ChunkResult&) {});
+  const auto b = bench.service.request(name_of(2), kHttp, [](const ChunkResult&) {});
+  const auto c = bench.service.request(name_of(3), kHttp, [](const ChunkResult&) {});
   ASSERT_TRUE(std::holds_alternative<ChunkError>(c));
   EXPECT_EQ(std::get<ChunkError>(c), ChunkError::kBusy);
-  const auto joins = bench.service.request(name_of(1), Lane::kHttp, 0.0, [](const ChunkResult&) {});
+  const auto joins = bench.service.request(name_of(1), kHttp, [](const ChunkResult&) {});
   EXPECT_TRUE(std::holds_alternative<Ticket>(joins)) << "a chunk that is queued already costs no place";
 }
 
@@ -169,19 +172,19 @@ TEST(ChunkService, AnswersWithAnErrorWhenTheJobThrowsAndGoesOn) {
   Bench bench;
   bench.builder.open();
   std::promise<ChunkResult> failed;
-  const auto bad = bench.service.request(name_of(1, 12), Lane::kHttp, 0.0, [&](ChunkResult r) { failed.set_value(r); });
+  const auto bad = bench.service.request(name_of(1, 12), kHttp, [&](ChunkResult r) { failed.set_value(r); });
   const ChunkResult result = failed.get_future().get();
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error(), ChunkError::kFailed);
   std::promise<bool> done;
   const auto good =
-      bench.service.request(name_of(2), Lane::kHttp, 0.0, [&](const ChunkResult& r) { done.set_value(r.has_value()); });
+      bench.service.request(name_of(2), kHttp, [&](const ChunkResult& r) { done.set_value(r.has_value()); });
   EXPECT_TRUE(done.get_future().get());
 }
 
 TEST(ChunkService, IsAsUrgentAsItsMostUrgentAsker) {
   Bench bench;
-  const auto busy = bench.service.request(name_of(0), Lane::kStream, 0.0, [](const ChunkResult&) {});
+  const auto busy = bench.service.request(name_of(0), kStream, [](const ChunkResult&) {});
   bench.builder.wait_for_start();
   std::mutex mutex;
   std::vector<int> order;
@@ -193,10 +196,10 @@ TEST(ChunkService, IsAsUrgentAsItsMostUrgentAsker) {
       if (order.size() == 3) both.set_value();
     };
   };
-  auto far = bench.service.request(name_of(1), Lane::kStream, 50.0, done(1));
-  auto near = bench.service.request(name_of(2), Lane::kStream, 10.0, done(2));
-  auto joined = bench.service.request(name_of(1), Lane::kStream, 90.0, done(1));
-  std::get<Ticket>(joined).set_urgency(1.0);
+  auto far = bench.service.request(name_of(1), {2, Lane::kView, 50.0}, done(1));
+  auto near = bench.service.request(name_of(2), {2, Lane::kView, 10.0}, done(2));
+  auto joined = bench.service.request(name_of(1), {2, Lane::kView, 90.0}, done(1));
+  std::get<Ticket>(joined).set_urgency(Lane::kView, 1.0);
   bench.builder.open();
   both.get_future().wait();
   EXPECT_EQ(order, (std::vector<int>{1, 1, 2}));
