@@ -70,9 +70,11 @@ TEST(FairnessSim, CompletesAViewWhileAScannerNeverStops) {
   while (!is_complete) {
     const auto message = stream.next();
     ASSERT_TRUE(message.has_value()) << "after " << chunks << " chunks";
-    chunks += std::holds_alternative<protocol::ChunkHead>(*message) ? 1 : 0;
+    chunks += std::holds_alternative<protocol::ChunkHead>(*message) ? 1U : 0U;
     is_complete = std::holds_alternative<protocol::Idle>(*message);
-    if (chunks % 50 == 0) ASSERT_TRUE(scanner.go_on());
+    if (chunks % 50 == 0) {
+      ASSERT_TRUE(scanner.go_on());
+    }
   }
   EXPECT_GT(chunks, 500U);
 }
