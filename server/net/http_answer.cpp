@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 
 #include "server/observe/json.hpp"
@@ -66,6 +68,26 @@ HttpAnswer error_answer(int status, std::string_view code, std::string_view mess
   answer.cache_control = "no-store";
   answer.fields = fields;
   return answer;
+}
+
+HttpAnswer unavailable_answer(double wait_s, std::string_view code, std::string_view message) {
+  constexpr double kRetryMaxS = 60;
+  HttpAnswer answer = error_answer(503, code, message);
+  answer.retry_after_s = static_cast<int>(std::clamp(std::ceil(wait_s), 1.0, kRetryMaxS));
+  return answer;
+}
+
+Count count_of(int status) {
+  switch (status) {
+    case 200:
+      return Count::kHttpOk;
+    case 204:
+      return Count::kHttpNoContent;
+    case 304:
+      return Count::kHttpNotModified;
+    default:
+      return status >= 500 ? Count::kHttpServerError : Count::kHttpClientError;
+  }
 }
 
 HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format) {

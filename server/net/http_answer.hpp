@@ -11,6 +11,7 @@
 
 #include "server/cache/payload.hpp"
 #include "server/net/static_files.hpp"
+#include "server/observe/metrics.hpp"
 
 namespace talus::server {
 
@@ -36,9 +37,13 @@ HttpAnswer json_answer(std::string body);
 /// `{"error": code, "message": message}`; `fields` must outlive the answer.
 HttpAnswer error_answer(int status, std::string_view code, std::string_view message, std::string_view fields = {});
 
+/// 503 that says when the queue, `wait_s` long, is expected to be done, so that coming again is worth it.
+HttpAnswer unavailable_answer(double wait_s, std::string_view code, std::string_view message);
+/// What an answer of this status counts as.
+Count count_of(int status);
+
 /// 200 with the payload (a map tile always is one), or 204 and what fills the chunk (nothing for an empty strip); for
-/// ever cacheable. `etag` must
-/// outlive the answer.
+/// ever cacheable. `etag` must outlive the answer.
 HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format);
 /// The place as JSON, or 404.
 HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <exception>
 #include <functional>
@@ -27,7 +26,6 @@ namespace {
 constexpr std::size_t kReadBytes = 4096;
 /// A standing place looks at thousands of columns, a thousand points at four each.
 constexpr double kQueryCostS = 0.005;
-constexpr double kRetryMaxS = 60;
 /// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
 /// connection and take the answer from under the peer.
 constexpr double kLingerS = 2;
@@ -62,7 +60,9 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<bool> read_more();
   Awaitable<Next> serve(std::string_view head);
   Awaitable<Next> refuse(HttpFault fault);
-  HttpAnswer unavailable(std::string_view code, std::string_view message) const;
+  HttpAnswer unavailable(std::string_view code, std::string_view message) const {
+    return unavailable_answer(net_.pool.wait_s(), code, message);
+  }
   Awaitable<HttpAnswer> answer_chunk(PayloadName name);
   Awaitable<HttpAnswer> answer_query(std::size_t world, Question question);
   Awaitable<Next> upgrade(std::size_t world, std::string_view head, HttpMethod method);
@@ -70,7 +70,6 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<bool> write_all(std::array<asio::const_buffer, 2> buffers);
   Awaitable<void> linger();
   void begin_wait();
-  void count(const HttpAnswer& answer);
 
   void set_deadline(double s, Count reason) {
     deadline_ = net_.clock.now() + seconds(s);
@@ -210,13 +209,6 @@ Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
   co_return was_sent ? Next::kRequest : Next::kEnd;
 }
 
-/// Says when the queue is expected to be done, so that coming again is worth it.
-HttpAnswer HttpConnection::unavailable(std::string_view code, std::string_view message) const {
-  HttpAnswer answer = error_answer(503, code, message);
-  answer.retry_after_s = static_cast<int>(std::clamp(std::ceil(net_.pool.wait_s()), 1.0, kRetryMaxS));
-  return answer;
-}
-
 Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
   ChunkService::Done done = [self = shared_from_this()](ChunkResult result) mutable {
     HttpConnection& connection = *self;
@@ -303,7 +295,7 @@ Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::
 }
 
 Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
-  count(answer);
+  net_.metrics.add(count_of(answer.status));
   const HeadOptions options{sweeper().http_date(), is_keep_alive_, is_http_1_0_};
   write_head(answer, options, head_);
   const auto body = answer.body();
@@ -346,19 +338,6 @@ Awaitable<void> HttpConnection::linger() {
     const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
     if (error) break;
     total += got;
-  }
-}
-
-void HttpConnection::count(const HttpAnswer& answer) {
-  switch (answer.status) {
-    case 200:
-      return net_.metrics.add(Count::kHttpOk);
-    case 204:
-      return net_.metrics.add(Count::kHttpNoContent);
-    case 304:
-      return net_.metrics.add(Count::kHttpNotModified);
-    default:
-      return net_.metrics.add(answer.status >= 500 ? Count::kHttpServerError : Count::kHttpClientError);
   }
 }
 
