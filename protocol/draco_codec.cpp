@@ -26,8 +26,9 @@ namespace {
 enum AttributeId : int { kPosition, kNormal, kMaterial, kRidge, kAttributes, kColour = kAttributes };
 static_assert(kMaterial == kDracoMaterialId && kRidge == kDracoRidgeId && kColour == kDracoColourId);
 
-/// `cells` is at most 32 in any world, and a strip has those of the next finer LOD.
-constexpr int kCellsMax = 2 * 32;
+/// Steps fit in 16 bits. A world has at most 32 cells a chunk; a strip has those of the next finer LOD, and a tile of a
+/// column stacks them.
+constexpr int kCellsMax = 0xFFFF / kStepsPerCell;
 /// Marching cubes makes at most 5 triangles a cell.
 constexpr std::size_t kCellTrianglesMax = 5;
 
@@ -73,7 +74,7 @@ void fill(draco::Mesh& out, const ChunkMesh& mesh, const MeshLattice& lattice) {
   const auto step = static_cast<float>(lattice.step_m);
   std::uint8_t* positions = add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
-    // Exact: at most 12 bits times a power of two.
+    // Exact: at most 16 bits times a power of two.
     const glm::vec3 metres = glm::vec3(mesh.positions[i]) * step;
     std::memcpy(positions + i * sizeof metres, &metres, sizeof metres);
   }

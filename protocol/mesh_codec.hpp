@@ -35,9 +35,19 @@ std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& 
 /// rounded. Safe on any bytes; at most `kOutboundMessageBytesMax` of them.
 std::expected<ChunkMesh, CodecError> decode_draco(std::span<const std::byte> bytes, const MeshLattice& lattice);
 
-/// glTF 2.0 binary with KHR_draco_mesh_compression required: POSITION, NORMAL, COLOR_0, _MATERIAL, _RIDGE; one node,
-/// translated by `translation_m`. A mesh without triangles gives a valid asset with an empty scene.
-std::expected<std::vector<std::byte>, CodecError> encode_glb(const ChunkMesh& mesh, const MeshLattice& lattice,
-                                                             const glm::dvec3& translation_m);
+/// One mesh of a glTF asset, and where its lowest corner stands.
+struct GlbPart {
+  const ChunkMesh& mesh;
+  MeshLattice lattice;
+  glm::dvec3 translation_m{};
+};
+
+/// glTF 2.0 binary with KHR_draco_mesh_compression required: POSITION, NORMAL, COLOR_0, _MATERIAL, _RIDGE; a node for
+/// each part that has triangles, with `key` in its extras. Without any it is a valid asset with an empty scene.
+std::expected<std::vector<std::byte>, CodecError> encode_glb(std::span<const GlbPart> parts, const ChunkKey& key);
+/// The same of one chunk, counted from `origin_m`.
+std::expected<std::vector<std::byte>, CodecError> encode_chunk_glb(const ChunkMesh& mesh, const ChunkKey& key,
+                                                                   int cells, double voxel_m,
+                                                                   const glm::dvec3& origin_m);
 
 }  // namespace talus::protocol

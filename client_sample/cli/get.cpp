@@ -59,7 +59,7 @@ ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkM
   const std::string_view extension = extension_of(options.output);
   if (extension == ".obj") return store(options, encode_obj(mesh, lattice, corner));
   if (extension == ".ply") return store(options, encode_ply(mesh, lattice, corner));
-  return store_encoded(options, extension == ".glb" ? protocol::encode_glb(mesh, lattice, corner)
+  return store_encoded(options, extension == ".glb" ? protocol::encode_chunk_glb(mesh, key, cells, voxel_m, {})
                                                     : protocol::encode_draco(mesh, lattice));
 }
 

@@ -44,4 +44,7 @@ struct ChunkMesh {
 /// the coarser one does not either, and there is no strip.
 unsigned faces_reached(const ChunkMesh& mesh, int cells);
 
+/// Appends `part` to `out` with its positions moved up by `up_steps`, which must leave them within 16 bits.
+void append_above(const ChunkMesh& part, int up_steps, ChunkMesh& out);
+
 }  // namespace talus

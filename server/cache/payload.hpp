@@ -16,14 +16,14 @@
 
 namespace talus::server {
 
-/// kHeight is of a whole column of chunks; kMap is a picture of a map tile: key.lod is its zoom, key.x and key.z are
-/// its x and y; kStrip is of one face of a chunk. The others are of one chunk.
-enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap, kStrip };
-inline constexpr std::size_t kPayloadFormats = 6;
+/// kHeight and kTile are of a whole column of chunks; kMap is a picture of a map tile: key.lod is its zoom, key.x and
+/// key.z are its x and y; kStrip is of one face of a chunk. The others are of one chunk.
+enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap, kStrip, kTile };
+inline constexpr std::size_t kPayloadFormats = 7;
 
 /// Whether a payload's name has an origin its positions are counted from.
 constexpr bool has_origin(PayloadFormat format) {
-  return format == PayloadFormat::kGlb;
+  return format == PayloadFormat::kGlb || format == PayloadFormat::kTile;
 }
 
 /// Encoded bytes of one chunk, column, map tile or strip. Without bytes when the chunk is all air or all rock, or the

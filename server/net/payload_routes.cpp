@@ -25,7 +25,25 @@ constexpr std::array<NamedFormat, 3> kChunkFormats{{
     {".density", PayloadFormat::kDensity},
 }};
 
-/// Three numbers of `origin=`, each within what a chunk's corner can be.
+/// A revision says which bytes the client knows of; every chunk is as its world made it, so any revision is current.
+std::optional<AnswerRoute> read_revision(std::string_view query) {
+  const QueryValue value = query_value(query, "rev");
+  if (value.state == QueryState::kAbsent) return std::nullopt;
+  const auto revision = whole_number(value.value);
+  if (value.state == QueryState::kPresent && revision && *revision >= 0) return std::nullopt;
+  return bad_request("bad_rev", "rev: expected the revision of a chunk, a whole number from 0");
+}
+
+}  // namespace
+
+AnswerRoute bad_request(std::string_view code, std::string_view message) {
+  return {error_answer(400, code, message)};
+}
+
+AnswerRoute not_found(std::string_view code, std::string_view message) {
+  return {error_answer(404, code, message)};
+}
+
 std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out) {
   constexpr double kOriginMax = 1.0e12;
   const QueryValue value = query_value(query, "origin");
@@ -39,16 +57,6 @@ std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out) 
   return std::nullopt;
 }
 
-/// A revision says which bytes the client knows of; every chunk is as its world made it, so any revision is current.
-std::optional<AnswerRoute> read_revision(std::string_view query) {
-  const QueryValue value = query_value(query, "rev");
-  if (value.state == QueryState::kAbsent) return std::nullopt;
-  const auto revision = whole_number(value.value);
-  if (value.state == QueryState::kPresent && revision && *revision >= 0) return std::nullopt;
-  return bad_request("bad_rev", "rev: expected the revision of a chunk, a whole number from 0");
-}
-
-/// One coordinate of a key, or the refusal that names it.
 std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_view text, std::int32_t& out) {
   const std::int32_t low = name == "lod" ? 0 : -kChunkLimit;
   const std::int32_t high = name == "lod" ? kLodMax : kChunkLimit;
@@ -59,16 +67,6 @@ std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_vi
   }
   out = *value;
   return std::nullopt;
-}
-
-}  // namespace
-
-AnswerRoute bad_request(std::string_view code, std::string_view message) {
-  return {error_answer(400, code, message)};
-}
-
-AnswerRoute not_found(std::string_view code, std::string_view message) {
-  return {error_answer(404, code, message)};
 }
 
 Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -16,6 +18,10 @@ inline constexpr std::string_view kChunkShape = "chunk: expected chunks/{lod}/{x
 AnswerRoute bad_request(std::string_view code, std::string_view message);
 AnswerRoute not_found(std::string_view code, std::string_view message);
 
+/// Three numbers of `origin=`, each within what a chunk's corner can be; the refusal if they are not that.
+std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out);
+/// One coordinate of a key (`lod`, or anything else), or the refusal that names it.
+std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_view text, std::int32_t& out);
 /// A payload of a world that exists, or 304 without work.
 Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name);
 /// `parts` are what follows `chunks/`: lod, x, y, z, where the last also carries the format.

@@ -12,6 +12,7 @@
 #include "core/grid/chunk_key.hpp"
 #include "core/map/map_tile.hpp"
 #include "server/net/payload_routes.hpp"
+#include "server/net/tileset_routes.hpp"
 #include "server/net/url_text.hpp"
 #include "server/world/place_query.hpp"
 
@@ -156,6 +157,7 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
   }
   if (parts[1] == "chunks") return chunk_route(request, context, world, parts.subspan(2));
   if (parts[1] == "seams") return seam_route(request, context, world, parts.subspan(2));
+  if (parts[1] == "3dtiles") return tileset_route(request, context, world, parts.subspan(2));
   if (parts[1] == "columns") return column_route(request, context, world, parts.subspan(2));
   if (parts[1] == "map") return map_route(request, context, world, parts.subspan(2));
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);

@@ -1,5 +1,6 @@
 #include "server/world/terrain_builder.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,6 +24,14 @@ bool is_of_chunk(PayloadFormat format) {
 
 Footprint footprint_of(const PayloadName& name) {
   return {name.world, name.key.lod, name.key.x, name.key.z};
+}
+
+/// Steps along a chunk's edge on the lattice of its strips, and chunks one above the other that 16 bits of them reach.
+int strip_steps(const WorldFunction& world) {
+  return 2 * world.cells() * kStepsPerCell;
+}
+std::int32_t strips_in_stack(const WorldFunction& world) {
+  return 0xFFFF / strip_steps(world);
 }
 
 }  // namespace
@@ -91,11 +100,66 @@ ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& w
     return ChunkKind::kMesh;
   }
   if (name.format == PayloadFormat::kStrip) return sample_strip(name, world, scratch);
+  if (name.format == PayloadFormat::kTile) {
+    sample_tile(name, world, scratch);
+    return ChunkKind::kMesh;
+  }
   if (const ChunkKind kind = load_if_crossed(name, world, scratch); kind != ChunkKind::kMesh) return kind;
   if (name.format == PayloadFormat::kDensity) {
     return sample_density_tile(world, name.key, scratch.build, scratch.density);
   }
   return mesh_chunk(world, name.key, sample_chunk(world, name.key, scratch.build), scratch.build, scratch.mesh);
+}
+
+void TerrainBuilder::sample_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  scratch.tile.clear();
+  scratch.strips.clear();
+  const glm::dvec2 range = world.height_range_m();
+  const double edge_m = box_of(name.key, world.cells(), world.voxel_m()).high.y;
+  const auto first = static_cast<std::int32_t>(std::floor(range.x / edge_m));
+  const auto last = static_cast<std::int32_t>(std::floor(range.y / edge_m));
+  PayloadName chunk = name;
+  chunk.format = PayloadFormat::kDraco;
+  for (chunk.key.y = first; chunk.key.y <= last; ++chunk.key.y) {
+    if (sample(chunk, world, scratch) == ChunkKind::kMesh) scratch.tile.push_back({chunk.key, scratch.mesh});
+  }
+  if (name.key.lod > 0 && !scratch.tile.empty()) sample_strips(name, world, scratch);
+}
+
+/// A finer surface may cross a side one chunk above or below where the column's own does.
+void TerrainBuilder::sample_strips(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  PayloadName strip = name;
+  strip.key = scratch.tile.front().key;
+  const std::int32_t last = scratch.tile.back().key.y + 1;
+  for (--strip.key.y; strip.key.y <= last; ++strip.key.y) {
+    if (scratch.strips.empty() || strip.key.y - scratch.strips.back().key.y >= strips_in_stack(world)) {
+      scratch.strips.push_back({strip.key, {}});
+    }
+    PlacedMesh& stack = scratch.strips.back();
+    for (const ChunkFace face : {ChunkFace::kPx, ChunkFace::kNx, ChunkFace::kPz, ChunkFace::kNz}) {
+      strip.face = face;
+      sample_strip(strip, world, scratch);
+      append_above(scratch.mesh, (strip.key.y - stack.key.y) * strip_steps(world), stack.mesh);
+    }
+  }
+}
+
+TerrainBuilder::Bytes TerrainBuilder::encode_tile(const PayloadName& name, const WorldFunction& world,
+                                                  const Scratch& scratch) const {
+  const auto corner_m = [&](const ChunkKey& key) {
+    return box_of(key, world.cells(), world.voxel_m()).low - name.origin;
+  };
+  std::vector<protocol::GlbPart> parts;
+  for (const PlacedMesh& placed : scratch.tile) {
+    parts.push_back(
+        {placed.mesh, protocol::mesh_lattice(placed.key, world.cells(), world.voxel_m()), corner_m(placed.key)});
+  }
+  for (const PlacedMesh& stack : scratch.strips) {  // none at LOD 0
+    protocol::MeshLattice lattice = protocol::strip_lattice(stack.key, world.cells(), world.voxel_m());
+    lattice.cells *= strips_in_stack(world);
+    parts.push_back({stack.mesh, lattice, corner_m(stack.key)});
+  }
+  return protocol::encode_glb(parts, name.key);
 }
 
 TerrainBuilder::Bytes TerrainBuilder::encode(const PayloadName& name, const WorldFunction& world,
@@ -105,14 +169,15 @@ TerrainBuilder::Bytes TerrainBuilder::encode(const PayloadName& name, const Worl
     case PayloadFormat::kDraco:
       return protocol::encode_draco(scratch.mesh, lattice);
     case PayloadFormat::kGlb:
-      return protocol::encode_glb(scratch.mesh, lattice,
-                                  box_of(name.key, world.cells(), world.voxel_m()).low - name.origin);
+      return protocol::encode_chunk_glb(scratch.mesh, name.key, world.cells(), world.voxel_m(), name.origin);
     case PayloadFormat::kDensity:
       return protocol::encode_density(scratch.density, name.key);
     case PayloadFormat::kHeight:
       return protocol::encode_height(scratch.height, name.key);
     case PayloadFormat::kStrip:
       return protocol::encode_draco(scratch.mesh, protocol::strip_lattice(name.key, world.cells(), world.voxel_m()));
+    case PayloadFormat::kTile:
+      return encode_tile(name, world, scratch);
     case PayloadFormat::kMap:
       break;
   }

@@ -30,6 +30,11 @@ class TerrainBuilder final : public ChunkBuilder {
   std::optional<ChunkPayload> build(const PayloadName& name, std::size_t thread, const CancelToken& token) override;
 
  private:
+  struct PlacedMesh {
+    ChunkKey key;
+    ChunkMesh mesh;
+  };
+
   /// Working memory of one pool thread: after its first surface chunk only the payload itself is allocated.
   struct alignas(64) Scratch {
     ChunkScratch build;
@@ -37,6 +42,8 @@ class TerrainBuilder final : public ChunkBuilder {
     ChunkMesh mesh;
     HeightTile height;
     DensityTile density;
+    std::vector<PlacedMesh> tile;    ///< chunks, one above the other
+    std::vector<PlacedMesh> strips;  ///< by lowest chunk; on the lattice of the next finer LOD
     MapScratch map;
     std::vector<std::uint8_t> rgb;  ///< of the tile being drawn
   };
@@ -50,6 +57,10 @@ class TerrainBuilder final : public ChunkBuilder {
   ChunkKind load_if_crossed(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind sample_strip(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   ChunkKind sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  /// All of a column's chunks and the strips on its sides into `scratch`.
+  void sample_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  void sample_strips(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  Bytes encode_tile(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
   Bytes encode(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
   CostClass cost_class(const PayloadName& name) const;
 

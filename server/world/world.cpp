@@ -12,9 +12,10 @@ namespace {
 
 /// Raised when the bytes of a format change for one and the same mesh.
 /// By format; a map's is raised when maps look different.
-constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc1",    "glb1", "density1",
-                                                                  "height1", "map1", "seam1"};
+constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc1", "glb1",  "density1", "height1",
+                                                                  "map1", "seam1", "tile1"};
 constexpr std::string_view kManifestEdition = "man1";
+constexpr std::string_view kTilesetEdition = "tileset1";
 /// Edits are not kept yet: every chunk is as its world made it.
 constexpr std::string_view kRevision = "0";
 
@@ -31,7 +32,8 @@ World::World(Manifest manifest)
       hash_(protocol::world_hash(function_.manifest())),
       shape_{function_.cells(), function_.voxel_m(), function_.height_range_m()},
       manifest_json_(protocol::manifest_json(function_.manifest())),
-      etag_manifest_(etag_of(hash_, kManifestEdition)) {
+      etag_manifest_(etag_of(hash_, kManifestEdition)),
+      etag_tileset_(etag_of(hash_, kTilesetEdition)) {
   std::ranges::transform(kEditions, etags_.begin(), [&](std::string_view edition) { return etag_of(hash_, edition); });
 }
 

@@ -29,6 +29,8 @@ class World {
   const std::string& etag(PayloadFormat format) const { return etags_[static_cast<std::size_t>(format)]; }
   /// Quoted: of the manifest's body.
   const std::string& manifest_etag() const { return etag_manifest_; }
+  /// Quoted: of everything that describes the world's tiles.
+  const std::string& tileset_etag() const { return etag_tileset_; }
 
  private:
   WorldFunction function_;
@@ -37,6 +39,7 @@ class World {
   std::string manifest_json_;
   std::array<std::string, kPayloadFormats> etags_;
   std::string etag_manifest_;
+  std::string etag_tileset_;
 };
 
 /// The worlds of a server, in the order they were named; PayloadName::world is an index into it.

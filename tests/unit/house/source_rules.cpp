@@ -77,7 +77,7 @@ const std::vector<Library>& libraries() {
       {"talus_generated.h", {"protocol"}, 2},
       {"zstd.h", {"protocol", "server/storage"}, 0},
       {"toml++/", {"protocol", "server/app"}, 2},
-      {"nlohmann/", {"protocol", "server/observe", "server/app", "client_sample/library", "client_sample/cli"}, 4},
+      {"nlohmann/", {"protocol", "server/observe", "server/app", "client_sample/library", "client_sample/cli"}, 5},
       {"CLI/", {"server/app", "client_sample/cli", "client_sample/load"}, 3},
       {"spdlog/", {"server/observe"}, 1},
       {"prometheus/", {"server/observe"}, 1},

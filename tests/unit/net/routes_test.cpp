@@ -70,6 +70,22 @@ TEST_F(Routes, ReadTheOtherFormatsOfChunksAndColumns) {
   EXPECT_EQ(std::get<ChunkRoute>(height).name.format, PayloadFormat::kHeight);
 }
 
+TEST_F(Routes, ReadTilesOfTheWorldAndOfAColumn) {
+  // The world's middle is the corner that the four tiles of level 1 share; 3D Tiles count y against z.
+  const Route world = resolve_target("/v1/worlds/default/3dtiles/world/29/268435456/268435455.glb");
+  EXPECT_EQ(std::get<ChunkRoute>(world).name.key, (ChunkKey{0, 0, 0, 0}));
+  EXPECT_EQ(std::get<ChunkRoute>(world).name.format, PayloadFormat::kTile);
+  const Route column = resolve_target("/v1/worlds/default/3dtiles/6/-3/4/2/0/1.glb", "origin=1,2,3");
+  EXPECT_EQ(std::get<ChunkRoute>(column).name.key, (ChunkKey{4, -12, 0, 18}));
+  EXPECT_EQ(std::get<ChunkRoute>(column).name.origin, glm::dvec3(1, 2, 3));
+  const Route subtree = resolve_target("/v1/worlds/default/3dtiles/6/-3/4/5/31/0.subtree");
+  EXPECT_EQ(answer_in(subtree)->status, 200);
+  EXPECT_EQ(answer_in(subtree)->text.substr(0, 4), "subt");
+  const std::string& etag = (*worlds_)[0]->tileset_etag();
+  const Route known = resolve_target("/v1/worlds/default/3dtiles/tileset.json", "", HttpMethod::kGet, etag);
+  EXPECT_EQ(answer_in(known)->status, 304);
+}
+
 TEST_F(Routes, NameTheFieldOfEveryMalformedCoordinate) {
   for (const std::string_view bad : {"2147483648", "-2147483649", "9007199254740992",
                                      "1073741824", "1e300",       "1.0",
@@ -130,7 +146,7 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
     HttpMethod method;
     int status;
   };
-  constexpr std::array<Case, 53> kTable{{
+  constexpr std::array<Case, 76> kTable{{
       {"/healthz", "", HttpMethod::kGet, 200},
       {"/readyz", "", HttpMethod::kHead, 200},
       {"/v1/worlds", "", HttpMethod::kGet, 200},
@@ -174,6 +190,29 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
       {"/v1/worlds/default/ray", "from=0,0,0&dir=0,1,0&max=nan", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0/0.drc", "rev=-1", HttpMethod::kGet, 400},
       {"/v1/worlds/default/chunks/0/0/0/0.density", "rev=x", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/tileset.json", "", HttpMethod::kGet, 200},
+      {"/v1/worlds/default/3dtiles/tileset.json", "origin=1e6,-5&km=4&lat=47&lon=11", HttpMethod::kHead, 200},
+      {"/v1/worlds/default/3dtiles/tileset.json", "origin=1", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "origin=0,1e12", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "km=4", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "origin=0,0&km=0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "origin=0,0&km=65", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "lat=47", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "lon=11", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "lat=91&lon=0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "lat=0&lon=x", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/world/5/0/0.subtree", "", HttpMethod::kGet, 200},
+      {"/v1/worlds/default/3dtiles/world/4/0/0.subtree", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/world/30/0/0.subtree", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/world/5/32/0.subtree", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/world/5/-1/0.subtree", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/world/16/0/0.glb", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/6/0/0/7/0/0.glb", "", HttpMethod::kGet, 404},
+      {"/v1/worlds/default/3dtiles/6/0/0/0/0/0.glb", "origin=0,0", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/13/0/0/0/0/0.glb", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/6/0/0/0/0/0.b3dm", "", HttpMethod::kGet, 400},
+      {"/v1/worlds/default/3dtiles/tileset.json", "", HttpMethod::kOther, 405},
       {"/v1/worlds/default/columns", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/columns/0/0/0", "", HttpMethod::kGet, 400},
       {"/v1/worlds/default/columns/0/0/0/0.height", "", HttpMethod::kGet, 400},

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,11 @@ namespace talus::protocol {
 namespace {
 
 const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
+
+std::vector<std::byte> encoded(const ChunkMesh& mesh, const glm::dvec3& translation_m) {
+  const GlbPart part{mesh, kUnit, translation_m};
+  return *encode_glb(std::span(&part, 1), {0, 1, 2, 3});
+}
 
 std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t at) {
   std::uint32_t out = 0;
@@ -24,7 +30,7 @@ nlohmann::json json_of(const std::vector<std::byte>& glb) {
 }
 
 TEST(Glb, IsAContainerWhoseLengthsAddUp) {
-  const auto glb = *encode_glb(sample_surface(32, 1), kUnit, {1, 2, 3});
+  const auto glb = encoded(sample_surface(32, 1), {1, 2, 3});
   EXPECT_EQ(std::memcmp(glb.data(), "glTF", 4), 0);
   EXPECT_EQ(u32_at(glb, 4), 2U);
   EXPECT_EQ(u32_at(glb, 8), glb.size());
@@ -38,7 +44,7 @@ TEST(Glb, IsAContainerWhoseLengthsAddUp) {
 TEST(Glb, DeclaresTheCountsAndBoundsOfTheDecodedMesh) {
   // Seven vertices are shared by shells that Draco splits: the asset has to say how many there are after that.
   const ChunkMesh mesh = sample_pinched_tetrahedra();
-  const auto json = json_of(*encode_glb(mesh, kUnit, {}));
+  const auto json = json_of(encoded(mesh, {}));
   const auto decoded = decode_draco(*encode_draco(mesh, kUnit), kUnit);
   EXPECT_GT(decoded->positions.size(), mesh.positions.size());
   EXPECT_EQ(json["accessors"][1]["count"], decoded->positions.size());
@@ -48,13 +54,29 @@ TEST(Glb, DeclaresTheCountsAndBoundsOfTheDecodedMesh) {
 }
 
 TEST(Glb, StandsWhereItIsToldTo) {
-  const auto json = json_of(*encode_glb(sample_surface(32, 1), kUnit, {1e9, -2.5, 3}));
+  const auto json = json_of(encoded(sample_surface(32, 1), {1e9, -2.5, 3}));
   EXPECT_EQ(json["nodes"][0]["translation"], nlohmann::json({1e9, -2.5, 3.0}));
   EXPECT_EQ(json["extensionsRequired"], nlohmann::json({"KHR_draco_mesh_compression"}));
 }
 
+TEST(Glb, HoldsPartAfterPartAndSaysWhoseTheyAre) {
+  const ChunkMesh mesh = sample_surface(32, 1);
+  const std::array<GlbPart, 3> parts{GlbPart{mesh, kUnit, {0, 0, 0}}, GlbPart{ChunkMesh{}, kUnit, {0, 32, 0}},
+                                     GlbPart{sample_pinched_tetrahedra(), kUnit, {0, 64, 0}}};
+  const auto glb = *encode_glb(parts, {4, -1, 0, 2});
+  const auto json = json_of(glb);
+  ASSERT_EQ(json["nodes"].size(), 2U) << "the empty part has no node";
+  EXPECT_EQ(json["nodes"][1]["translation"], nlohmann::json({0.0, 64.0, 0.0}));
+  EXPECT_EQ(json["nodes"][1]["extras"], nlohmann::json({{"lod", 4}, {"x", -1}, {"y", 0}, {"z", 2}}));
+  EXPECT_EQ(json["meshes"][1]["primitives"][0]["indices"], 6);
+  const std::size_t binary = 28 + u32_at(glb, 12);
+  for (const auto& view : json["bufferViews"]) {
+    EXPECT_EQ(std::memcmp(glb.data() + binary + view["byteOffset"].get<std::size_t>(), "DRACO", 5), 0);
+  }
+}
+
 TEST(Glb, OfNothingIsAnEmptyScene) {
-  const auto glb = *encode_glb({}, kUnit, {});
+  const auto glb = encoded({}, {});
   EXPECT_EQ(u32_at(glb, 8), glb.size());
   const auto json = json_of(glb);
   EXPECT_FALSE(json.contains("meshes"));

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "protocol/mesh_codec.hpp"
 #include "server/world/place_query.hpp"
@@ -36,6 +37,26 @@ TEST(TerrainBuilder, GivesTheBytesOfBuildAndEncodeWhateverWasBuiltBefore) {
     }
   }
   EXPECT_GT(meshes, 5);
+}
+
+TEST(TerrainBuilder, MakesATileOfEveryLodWithAMeshInEach) {
+  Worlds worlds;
+  worlds.push_back(std::make_unique<const World>(Manifest{}));
+  const SystemClock clock;
+  Metrics metrics;
+  TerrainBuilder builder(worlds, clock, metrics, 1);
+  for (std::int32_t lod = 0; lod <= kLodMax; ++lod) {
+    for (const std::int32_t x : {-1, 3}) {
+      PayloadName name;
+      name.format = PayloadFormat::kTile;
+      name.key = {lod, x, 0, -2};
+      const auto payload = builder.build(name, 0, CancelToken{});
+      ASSERT_TRUE(payload.has_value());
+      EXPECT_EQ(payload->kind, ChunkKind::kMesh);
+      const std::string_view text(reinterpret_cast<const char*>(payload->bytes.data()), payload->bytes.size());
+      EXPECT_NE(text.find("\"POSITION\""), std::string_view::npos) << "LOD " << lod << ": a column has a surface";
+    }
+  }
 }
 
 TEST(TerrainBuilder, GivesTheBytesOfAStripWhateverWasBuiltBefore) {
