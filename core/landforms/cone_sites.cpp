@@ -93,7 +93,8 @@ void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<
       ConeSite site;
       // In a world that wraps a site is that of its cell in the first turn, whole periods away.
       const std::int64_t x_cell = wrapped(cx, around);
-      const double turns_m = around == 0 ? 0.0 : static_cast<double>((cx - x_cell) / around) * period_m(grid);
+      const std::int64_t turns = around == 0 ? 0 : (cx - x_cell) / around;
+      const double turns_m = turns == 0 ? 0.0 : static_cast<double>(turns) * period_m(grid);
       site.hash = mix64(mix64(c.seed, static_cast<std::uint64_t>(x_cell)), static_cast<std::uint64_t>(cz));
       Draw draw(site.hash);
       if (draw.unit() >= std::max(c.land_share, c.sea_share)) continue;
