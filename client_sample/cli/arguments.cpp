@@ -29,7 +29,7 @@ Exit codes:
   4 manifest with faults   5 fly: a viewer failed or its view was never complete)";
 
 void add_server(CLI::App& app, ServerOptions& server) {
-  app.add_option("--server", server.url, "URL of the server")->capture_default_str();
+  app.add_option("--server", server.url, "URL of the server; fly also takes tcp://HOST:PORT")->capture_default_str();
   app.add_option("--world", server.world, "name of the world")
       ->capture_default_str()
       ->check([](const std::string& name) {

@@ -4,6 +4,7 @@
 #include <deque>
 #include <random>
 #include <utility>
+#include <variant>
 
 #include <asio/connect.hpp>
 #include <asio/io_context.hpp>
@@ -12,6 +13,7 @@
 #include <asio/write.hpp>
 
 #include "client_sample/library/handshake.hpp"
+#include "client_sample/library/length_frames.hpp"
 #include "client_sample/library/websocket_frames.hpp"
 #include "protocol/limits.hpp"
 
@@ -43,8 +45,9 @@ class Connection::State : public std::enable_shared_from_this<State> {
         server_(std::move(server)),
         target_(std::move(target)),
         handlers_(std::move(handlers)),
-        random_(std::random_device{}()),
-        reader_(protocol::kOutboundMessageBytesMax) {}
+        random_(std::random_device{}()) {
+    if (is_tcp()) reader_.emplace<LengthReader>(protocol::kOutboundMessageBytesMax);
+  }
 
   void open() {
     expire_in(kOpenTimeout);
@@ -59,16 +62,22 @@ class Connection::State : public std::enable_shared_from_this<State> {
 
   void send(Opcode opcode, std::span<const std::byte> payload) {
     if (!is_open_ || is_over_) return;
-    outbox_.push_back(masked_frame(opcode, payload, static_cast<std::uint32_t>(random_())));
+    outbox_.push_back(is_tcp() ? length_frame(payload)
+                               : masked_frame(opcode, payload, static_cast<std::uint32_t>(random_())));
     if (outbox_.size() == 1) write();
   }
 
   void close() {
     if (is_over_) return;
     if (!is_open_) return end({ErrorCode::kConnect, "closed before the connection was open"});
+    if (is_closing_) return;
     is_closing_ = true;
-    const std::array<std::byte, 2> normal{std::byte{0x03}, std::byte{0xE8}};  // 1000
-    send(Opcode::kClose, normal);
+    if (is_tcp()) {
+      end_sending();
+    } else {
+      const std::array<std::byte, 2> normal{std::byte{0x03}, std::byte{0xE8}};  // 1000
+      send(Opcode::kClose, normal);
+    }
     expire_in(std::chrono::seconds(2));
   }
 
@@ -92,6 +101,15 @@ class Connection::State : public std::enable_shared_from_this<State> {
   }
 
  private:
+  bool is_tcp() const { return server_.carrier == Carrier::kTcp; }
+
+  /// On plain TCP the end of what we say is the end of our half of the stream.
+  void end_sending() {
+    if (!outbox_.empty()) return;
+    asio::error_code ignored;
+    socket_.shutdown(tcp::socket::shutdown_send, ignored);
+  }
+
   void connect(const tcp::resolver::results_type& found) {
     asio::async_connect(
         socket_, found, [self = shared_from_this()](const asio::error_code& error, const tcp::endpoint&) {
@@ -102,8 +120,16 @@ class Connection::State : public std::enable_shared_from_this<State> {
           }
           asio::error_code ignored;
           self->socket_.set_option(tcp::no_delay(true), ignored);
-          self->shake_hands();
+          self->is_tcp() ? self->begin() : self->shake_hands();
         });
+  }
+
+  /// Messages may come and go.
+  void begin() {
+    is_open_ = true;
+    expire_in(kSilenceMax);
+    if (handlers_.on_open) handlers_.on_open();
+    if (!is_over_ && is_tcp()) read();
   }
 
   void shake_hands() {
@@ -141,22 +167,20 @@ class Connection::State : public std::enable_shared_from_this<State> {
       return;
     }
     if (const auto error = handshake_fault(answer_, key_)) return end(*error);
-    is_open_ = true;
-    expire_in(kSilenceMax);
     const Bytes rest = [&] {
       const auto view = std::as_bytes(std::span(answer_)).subspan(end_of_head + 4);
       return Bytes(view.begin(), view.end());
     }();
     answer_.clear();
-    if (handlers_.on_open) handlers_.on_open();
+    begin();
     if (!is_over_ && !rest.empty()) take(rest);
   }
 
   void take(std::span<const std::byte> bytes) {
     if (!is_closing_) expire_in(kSilenceMax);
-    reader_.feed(bytes);
+    std::visit([&](auto& reader) { reader.feed(bytes); }, reader_);
     while (!is_over_) {
-      const auto event = reader_.next();
+      const auto event = std::visit([](auto& reader) { return reader.next(); }, reader_);
       if (!event) return;
       switch (event->kind) {
         case FrameReader::Event::Kind::kMessage:
@@ -172,7 +196,7 @@ class Connection::State : public std::enable_shared_from_this<State> {
                       is_closing_ ? "closed as asked"
                                   : "the server closed the connection, code " + std::to_string(event->close_code)});
         case FrameReader::Event::Kind::kFault:
-          return end({ErrorCode::kProtocol, "the server broke the WebSocket protocol: " + std::string(event->fault)});
+          return end({ErrorCode::kProtocol, "the server broke the framing: " + std::string(event->fault)});
       }
     }
   }
@@ -183,7 +207,8 @@ class Connection::State : public std::enable_shared_from_this<State> {
                         if (self->is_over_) return;
                         if (error) return self->end(self->broken(error));
                         self->outbox_.pop_front();
-                        if (!self->outbox_.empty()) self->write();
+                        if (!self->outbox_.empty()) return self->write();
+                        if (self->is_closing_ && self->is_tcp()) self->end_sending();
                       });
   }
 
@@ -207,8 +232,8 @@ class Connection::State : public std::enable_shared_from_this<State> {
   std::string key_;
   std::string request_;
   std::string answer_;
-  FrameReader reader_;
-  std::array<std::byte, 64 * 1024> input_{};
+  std::variant<FrameReader, LengthReader> reader_{FrameReader(protocol::kOutboundMessageBytesMax)};
+  std::array<std::byte, 16 * 1024> input_{};  ///< a chunk or two; programs with many connections pay it for each
   std::deque<Bytes> outbox_;
   bool is_open_ = false;
   bool is_closing_ = false;

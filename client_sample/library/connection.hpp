@@ -1,4 +1,4 @@
-// A WebSocket to a talus server that carries whole messages.
+// A connection to a talus server that carries whole messages, over WebSocket or plain TCP as the address says.
 //
 // Nothing here starts a thread: all callbacks run inside Loop::poll or Loop::run_for, on the thread that calls them, so
 // an engine polls once a frame and needs no lock. Owner: the thread of the loop.
@@ -47,11 +47,11 @@ class Connection {
     std::function<void(std::span<const std::byte>)> on_message;  ///< one whole message; bytes live during the call
     std::function<void(const ClientError&)> on_closed;           ///< once, and nothing after it
   };
-  /// From resolving to an open WebSocket; then the longest silence, which the server's pings break every 20 s.
+  /// From resolving to an open connection; then the longest silence, which the server's pings break every 20 s.
   static constexpr std::chrono::seconds kOpenTimeout{10};
   static constexpr std::chrono::seconds kSilenceMax{60};
 
-  /// Connects in the background. `target` is the path, as "/v1/worlds/default/stream".
+  /// Connects in the background. `target` is the path, as "/v1/worlds/default/stream"; plain TCP has no paths.
   Connection(Loop& loop, const ServerAddress& server, std::string target, Handlers handlers);
   /// Drops the connection; no callback runs any more. Not from inside a callback.
   ~Connection();

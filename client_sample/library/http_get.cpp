@@ -179,6 +179,10 @@ class Exchange {
 
 std::expected<HttpAnswer, ClientError> http_get(const ServerAddress& server, std::string_view target,
                                                 std::chrono::milliseconds timeout) {
+  if (server.carrier == Carrier::kTcp) {
+    return std::unexpected(
+        ClientError{ErrorCode::kUrl, server.authority() + " speaks no HTTP: give an http:// address"});
+  }
   Exchange exchange(server, timeout);
   return exchange.get(target);
 }

@@ -6,7 +6,8 @@
 namespace talus::client {
 namespace {
 
-constexpr std::string_view kScheme = "http://";
+constexpr std::string_view kHttp = "http://";
+constexpr std::string_view kTcp = "tcp://";
 
 std::unexpected<ClientError> unusable(std::string_view url, std::string_view why) {
   return std::unexpected(ClientError{
@@ -50,19 +51,22 @@ std::string ServerAddress::authority() const {
 
 std::expected<ServerAddress, ClientError> parse_server_url(std::string_view url) {
   if (url.starts_with("https://")) return unusable(url, "is https, which this client does not speak");
-  if (!url.starts_with(kScheme)) return unusable(url, "does not begin with http://");
+  const bool is_tcp = url.starts_with(kTcp);
+  if (!is_tcp && !url.starts_with(kHttp)) return unusable(url, "begins with neither http:// nor tcp://");
   if (!std::ranges::all_of(url, is_printable)) return unusable(url, "holds a blank or a control character");
-  std::string_view rest = url.substr(kScheme.size());
+  std::string_view rest = url.substr(is_tcp ? kTcp.size() : kHttp.size());
   if (rest.find_first_of("?#@") != std::string_view::npos) return unusable(url, "has a query, fragment or user");
 
   ServerAddress out;
+  if (is_tcp) out.carrier = Carrier::kTcp;
   const std::size_t slash = rest.find('/');
   if (slash != std::string_view::npos) {
     out.prefix = rest.substr(slash);
     while (out.prefix.ends_with('/')) out.prefix.pop_back();
+    if (is_tcp && !out.prefix.empty()) return unusable(url, "has a path, which tcp has not");
     rest = rest.substr(0, slash);
   }
-  std::string_view port = "80";
+  std::string_view port = is_tcp ? "8081" : "80";
   const std::size_t bracket = rest.find(']');
   const std::size_t colon = rest.find(':', bracket == std::string_view::npos ? 0 : bracket);
   if (colon != std::string_view::npos) {

@@ -63,9 +63,13 @@ TEST(ServerUrl, IsReadOrRefusedWithAReason) {
   EXPECT_EQ(v6->host, "::1");
   EXPECT_EQ(v6->port, 9);
   EXPECT_EQ(v6->prefix, "/talus");
-  for (const char* bad :
-       {"", "example.org", "https://example.org", "http://", "http://:80", "http://a:0", "http://a:65536",
-        "http://a:+1", "http://a:", "http://a b", "http://a/?q", "http://u@a", "http://a\r\nX: y"}) {
+  const auto tcp = parse_server_url("tcp://example.org");
+  ASSERT_TRUE(tcp);
+  EXPECT_EQ(tcp->authority(), "example.org:8081");
+  EXPECT_EQ(tcp->carrier, Carrier::kTcp);
+  for (const char* bad : {"", "example.org", "https://example.org", "tcp://a/path", "tcp://", "tcp://a:0", "http://",
+                          "http://:80", "http://a:0", "http://a:65536", "http://a:+1", "http://a:", "http://a b",
+                          "http://a/?q", "http://u@a", "http://a\r\nX: y"}) {
     const auto refused = parse_server_url(bad);
     ASSERT_FALSE(refused) << bad;
     EXPECT_EQ(refused.error().code, ErrorCode::kUrl);

@@ -1,0 +1,85 @@
+// The client library against a whole server, over every carrier.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "client_sample/library/world_stream.hpp"
+#include "tests/sim/running_server.hpp"
+
+namespace talus::server {
+namespace {
+
+using client::Carrier;
+
+client::ServerAddress address_of(RunningServer& server, Carrier carrier) {
+  const bool is_tcp = carrier == Carrier::kTcp;
+  const std::string& bound = is_tcp ? server->tcp_address() : server->http_address();
+  return *client::parse_server_url((is_tcp ? "tcp://" : "http://") + bound);
+}
+
+class ClientOver : public testing::TestWithParam<Carrier> {
+ protected:
+  template <typename Done>
+  bool run_until(Done done) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!done() && std::chrono::steady_clock::now() < until) loop.run_for(std::chrono::milliseconds(5));
+    return done();
+  }
+
+  RunningServer server;
+  client::Loop loop;
+};
+
+INSTANTIATE_TEST_SUITE_P(Carriers, ClientOver, testing::Values(Carrier::kWebSocket, Carrier::kTcp),
+                         [](const auto& of) { return of.param == Carrier::kTcp ? "Tcp" : "WebSocket"; });
+
+TEST_P(ClientOver, AViewBecomesCompleteAndIsItsInterestArea) {
+  client::StreamOptions options;
+  options.server = address_of(server, GetParam());
+  std::vector<ChunkKey> came;
+  std::optional<protocol::ViewAccepted> accepted;
+  std::optional<client::ClientError> closed;
+  bool is_complete = false;
+  client::StreamHandlers handlers;
+  handlers.on_view = [&](const protocol::ViewAccepted& view) { accepted = view; };
+  handlers.on_chunk = [&](const client::ArrivedChunk& chunk) { came.push_back(chunk.head.key); };
+  handlers.on_idle = [&](const protocol::Idle& idle) { is_complete = idle.view_sequence == 1; };
+  handlers.on_closed = [&](const client::ClientError& error) { closed = error; };
+  client::WorldStream stream(loop, options, handlers);
+  protocol::View view;
+  view.position = {0, 600, 0};
+  view.far_m = 300;
+  stream.look(view);
+  ASSERT_TRUE(run_until([&] { return is_complete || closed; }));
+  ASSERT_FALSE(closed) << closed->message;
+
+  std::vector<ChunkKey> area;
+  protocol::interest_area(protocol::clamped(view, stream.info()->shape), stream.info()->shape, area);
+  std::ranges::sort(area);
+  std::ranges::sort(came);
+  EXPECT_EQ(came, area);
+  EXPECT_EQ(accepted->chunks, area.size());
+
+  stream.close();
+  ASSERT_TRUE(run_until([&] { return closed.has_value(); }));
+  EXPECT_EQ(closed->message, "closed as asked");
+}
+
+TEST_P(ClientOver, AServerThatKnowsNoSuchWorldSaysSo) {
+  client::StreamOptions options;
+  options.server = address_of(server, GetParam());
+  options.world = "nowhere";
+  std::optional<client::ClientError> closed;
+  client::StreamHandlers handlers;
+  handlers.on_closed = [&](const client::ClientError& error) { closed = error; };
+  const client::WorldStream stream(loop, options, handlers);
+  ASSERT_TRUE(run_until([&] { return closed.has_value(); }));
+  // A WebSocket names its world in the path already.
+  EXPECT_EQ(closed->code, GetParam() == Carrier::kTcp ? client::ErrorCode::kRefused : client::ErrorCode::kHandshake);
+}
+
+}  // namespace
+}  // namespace talus::server
