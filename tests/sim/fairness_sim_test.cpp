@@ -64,7 +64,6 @@ TEST(FairnessSim, CompletesAViewWhileAScannerNeverStops) {
   StreamPeer stream(server->http_address());
   ASSERT_TRUE(stream.open(kPlenty));
   stream.look_from(0, 500);
-  stream.peer.wait_at_most(10);
   std::size_t chunks = 0;
   bool is_complete = false;
   while (!is_complete) {

@@ -35,9 +35,9 @@ class RunningServer {
   std::unique_ptr<Server> server_;
 };
 
-/// Waits up to five seconds for what another thread brings about.
+/// Waits up to a minute for what another thread brings about.
 inline bool eventually(const std::function<bool()>& holds) {
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 6000; ++i) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -25,7 +25,6 @@ class WarmRestart : public testing::Test {
   /// Every chunk message of one view, as it came; the view must become complete, however busy the machine.
   static std::map<ChunkKey, std::string> view_of(RunningServer& server) {
     StreamPeer stream(server->http_address());
-    stream.peer.wait_at_most(30);
     EXPECT_TRUE(stream.open(std::uint64_t{1} << 40));
     stream.look_from(0, 700);
     std::map<ChunkKey, std::string> out;
