@@ -9,7 +9,7 @@
 namespace talus {
 
 /// Density steps per cell edge: four times finer than the lattice of vertices, so that crossings computed from them are
-/// within a step of the mesh's.
+/// within a step of the mesh's once they are held kCrossingMarginSteps off the ends of their edges.
 inline constexpr int kDensityStepsPerCell = 256;
 /// Densities are held within [-kDensityHeld, kDensityHeld - 1] steps, 8 cells either way: brushes and blends see a true
 /// distance around the surface, and what lies beyond costs no bytes.

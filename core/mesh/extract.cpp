@@ -112,7 +112,7 @@ TALUS_COUNTS_BITS void extract_triangles(const SignRows& signs, const CrossedEdg
 int crossing_step(float from, float to) {
   const float t = from / (from - to);
   const auto step = static_cast<int>(t * static_cast<float>(kStepsPerCell) + 0.5f);
-  return std::clamp(step, 1, kStepsPerCell - 1);
+  return std::clamp(step, kCrossingMarginSteps, kStepsPerCell - kCrossingMarginSteps);
 }
 
 }  // namespace talus

@@ -59,9 +59,14 @@ void for_each_crossed_edge(const SignRows& signs, const CrossedEdges& edges, Mak
   }
 }
 
-/// Where on an edge the surface crosses it, in lattice steps 1..kStepsPerCell - 1, given the densities at its ends (of
-/// unlike sign). Strictly inside: no two vertices of a chunk coincide, and three on the edges of a convex cell are
-/// never in a line.
+/// How near a vertex comes to the ends of its edge, in lattice steps. A surface that grazes a sample would leave
+/// slivers around it: with 4 of 64 steps no triangle of a cell has an angle below 3 degrees, with 1 they go down to
+/// 0.7. Costs at most 1/16 of a cell of place, where a surface passes a sample within that.
+inline constexpr int kCrossingMarginSteps = kStepsPerCell / 16;
+
+/// Where on an edge the surface crosses it, in lattice steps, given the densities at its ends (of unlike sign): held
+/// kCrossingMarginSteps inside of both. So no two vertices of a chunk coincide, and three on the edges of a convex cell
+/// are never in a line.
 int crossing_step(float from, float to);
 
 }  // namespace talus

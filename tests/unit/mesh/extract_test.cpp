@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <tuple>
+
+#include <glm/geometric.hpp>
 
 #include "core/mesh/cell_table.hpp"
 #include "tests/support/random.hpp"
@@ -120,11 +124,14 @@ TEST(Extract, ClosesEverySurfaceInsideTheChunkWhateverTheSigns) {
   }
 }
 
-TEST(Extract, KeepsCrossingsStrictlyInsideTheirEdge) {
+TEST(Extract, KeepsCrossingsAMarginInsideTheirEdge) {
+  constexpr int kLast = kStepsPerCell - kCrossingMarginSteps;
   EXPECT_EQ(crossing_step(-1.0f, 1.0f), kStepsPerCell / 2);
-  EXPECT_EQ(crossing_step(-1e-30f, 5.0f), 1);
-  EXPECT_EQ(crossing_step(0.0f, -5.0f), 1);
-  EXPECT_EQ(crossing_step(5.0f, -1e-30f), kStepsPerCell - 1);
+  EXPECT_EQ(crossing_step(-1.0f, 15.0f), kCrossingMarginSteps);
+  EXPECT_EQ(crossing_step(-1.0f, 9.0f), 6);
+  EXPECT_EQ(crossing_step(-1e-30f, 5.0f), kCrossingMarginSteps);
+  EXPECT_EQ(crossing_step(0.0f, -5.0f), kCrossingMarginSteps);
+  EXPECT_EQ(crossing_step(5.0f, -1e-30f), kLast);
   testing::Random random(kSeed);
   for (int i = 0; i < 10'000; ++i) {
     const auto a = static_cast<float>(random.real(0, 10));
@@ -132,6 +139,38 @@ TEST(Extract, KeepsCrossingsStrictlyInsideTheirEdge) {
     // One edge, seen from its two ends: the same place.
     EXPECT_NEAR(crossing_step(a, b), kStepsPerCell - crossing_step(b, a), 1);
   }
+}
+
+/// Where a vertex on `edge` of a cell lies, `step` from the edge's lower end.
+glm::dvec3 place_on(int edge, int step) {
+  const int axis = edge / 4;
+  glm::dvec3 out{};
+  out[axis] = step;
+  out[axis == 0 ? 1 : 0] = kStepsPerCell * (edge & 1);
+  out[axis == 2 ? 1 : 2] = kStepsPerCell * (edge >> 1 & 1);
+  return out;
+}
+
+/// Sine of the angle at `at`, towards `b` and `c`.
+double sine_at(const glm::dvec3& at, const glm::dvec3& b, const glm::dvec3& c) {
+  return glm::length(glm::cross(b - at, c - at)) / (glm::length(b - at) * glm::length(c - at));
+}
+
+TEST(Extract, LeavesNoTriangleWithAnAngleBelowThreeDegrees) {
+  // Angles are least where vertices are as far out as they may be.
+  constexpr std::array<int, 3> kSteps{kCrossingMarginSteps, kStepsPerCell / 2, kStepsPerCell - kCrossingMarginSteps};
+  double least = 1.0;
+  for (const CellTriangles& cell : kCellTriangles) {
+    for (std::size_t t = 0; t < 3U * cell.count; t += 3) {
+      for (int choice = 0; choice < 27; ++choice) {
+        const glm::dvec3 a = place_on(cell.edges[t], kSteps[static_cast<std::size_t>(choice % 3)]);
+        const glm::dvec3 b = place_on(cell.edges[t + 1], kSteps[static_cast<std::size_t>(choice / 3 % 3)]);
+        const glm::dvec3 c = place_on(cell.edges[t + 2], kSteps[static_cast<std::size_t>(choice / 9)]);
+        least = std::min({least, sine_at(a, b, c), sine_at(b, c, a), sine_at(c, a, b)});
+      }
+    }
+  }
+  EXPECT_GT(least, std::sin(3.0 * std::numbers::pi / 180.0));
 }
 
 }  // namespace
