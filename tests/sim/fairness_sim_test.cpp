@@ -60,10 +60,10 @@ TEST(FairnessSim, MakesTheFirstChunkOfAStreamBeforeTheQueueOfAScanner) {
 
 TEST(FairnessSim, CompletesAViewWhileAScannerNeverStops) {
   RunningServer server(one_thread());
-  Scanner scanner(server->http_address(), 60);
+  Scanner scanner(server->http_address(), 20);
   StreamPeer stream(server->http_address());
   ASSERT_TRUE(stream.open(kPlenty));
-  stream.look_from(0, 500);
+  stream.look_from(0, 200);
   std::size_t chunks = 0;
   bool is_complete = false;
   while (!is_complete) {
