@@ -21,7 +21,8 @@ std::string_view name_of(ErrorCode code);
 
 struct ClientError {
   ErrorCode code{};
-  std::string message;  ///< a sentence for people
+  std::string message;   ///< a sentence for people
+  bool may_pass = true;  ///< trying again later may help
 };
 
 }  // namespace talus::client

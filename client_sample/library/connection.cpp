@@ -81,6 +81,15 @@ class Connection::State : public std::enable_shared_from_this<State> {
     expire_in(std::chrono::seconds(2));
   }
 
+  void stall() {
+    if (is_over_ || is_stalled_) return;
+    is_stalled_ = true;
+    deadline_.cancel();
+    socket_.async_wait(tcp::socket::wait_error, [self = shared_from_this()](const asio::error_code&) {
+      if (!self->is_over_) self->end({ErrorCode::kConnect, "the server cut the connection that did not read"});
+    });
+  }
+
   /// The last step: every way the connection can end comes by here once. By value: what abandon() lets go of may own
   /// the caller's.
   // NOLINTNEXTLINE(performance-unnecessary-value-param)
@@ -146,11 +155,11 @@ class Connection::State : public std::enable_shared_from_this<State> {
   void read() {
     socket_.async_read_some(asio::buffer(input_),
                             [self = shared_from_this()](const asio::error_code& error, std::size_t size) {
-                              if (self->is_over_) return;
+                              if (self->is_over_ || self->is_stalled_) return;
                               if (error) return self->end(self->broken(error));
                               const std::span<const std::byte> bytes = std::span(self->input_).first(size);
                               self->is_open_ ? self->take(bytes) : self->take_handshake(bytes);
-                              if (!self->is_over_) self->read();
+                              if (!self->is_over_ && !self->is_stalled_) self->read();
                             });
   }
 
@@ -238,6 +247,7 @@ class Connection::State : public std::enable_shared_from_this<State> {
   bool is_open_ = false;
   bool is_closing_ = false;
   bool is_over_ = false;
+  bool is_stalled_ = false;
 };
 
 Connection::Connection(Loop& loop, const ServerAddress& server, std::string target, Handlers handlers)
@@ -255,6 +265,10 @@ void Connection::send(std::vector<std::byte> message) {
 
 void Connection::close() {
   state_->close();
+}
+
+void Connection::stall() {
+  state_->stall();
 }
 
 }  // namespace talus::client

@@ -62,6 +62,8 @@ class Connection {
   void send(std::vector<std::byte> message);
   /// Says goodbye and closes; on_closed still comes.
   void close();
+  /// Reads no more, for good, and only waits for the peer to give up: what a test of a server calls a stalled reader.
+  void stall();
 
  private:
   class State;

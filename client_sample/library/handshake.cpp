@@ -54,8 +54,11 @@ std::optional<ClientError> handshake_fault(std::string_view answer, std::string_
   if (!status.starts_with("HTTP/1.1 ")) return ClientError{ErrorCode::kHandshake, "the answer is not HTTP/1.1"};
   if (!status.starts_with("HTTP/1.1 101")) {
     const std::size_t body = std::min(head.size() + 4, answer.size());
-    return ClientError{ErrorCode::kHandshake, "the server answered " + std::string(status.substr(9)) + " " +
-                                                  std::string(answer.substr(body, 300))};
+    // What a 4xx refuses it refuses again; but 429, and what a proxy says of a server that restarts, pass.
+    const bool may_pass = !status.starts_with("HTTP/1.1 4") || status.starts_with("HTTP/1.1 429");
+    return ClientError{
+        ErrorCode::kHandshake,
+        "the server answered " + std::string(status.substr(9)) + " " + std::string(answer.substr(body, 300)), may_pass};
   }
   const std::string_view fields = head.substr(std::min(line_end + 2, head.size()));
   if (lower(field(fields, "upgrade")) != "websocket" ||

@@ -1,10 +1,12 @@
 #include "client_sample/library/world_info.hpp"
 
+#include <charconv>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
 #include "core/grid/chunk_key.hpp"
+#include "protocol/manifest_toml.hpp"
 
 namespace talus::client {
 namespace {
@@ -46,6 +48,38 @@ std::optional<WorldInfo> parse_world_info(std::string_view manifest_json) {
   } catch (const Json::exception&) {
     return std::nullopt;
   }
+}
+
+std::optional<Manifest> manifest_of(const WorldInfo& info) {
+  const Json json = Json::parse(info.manifest_json, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  Manifest out;
+  out.name = info.name;
+  const char* end = info.seed.data() + info.seed.size();
+  if (std::from_chars(info.seed.data(), end, out.seed).ptr != end) return std::nullopt;
+  try {
+    for (const Json& parameter : json.at("parameters")) {
+      const std::size_t at = parameter_index(parameter.at("name").get<std::string>());
+      if (at >= out.values.size()) return std::nullopt;
+      out.values[at] = parameter.at("value").get<double>();
+    }
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+  // The hash is made of every parameter and the generator version: equal hashes, equal chunks.
+  if (protocol::world_hash(out) != info.world_hash) return std::nullopt;
+  return out;
+}
+
+std::vector<double> parse_heights(std::string_view body) {
+  const Json json = Json::parse(body, nullptr, false);
+  std::vector<double> out;
+  try {
+    for (const Json& point : json.at("points")) out.push_back(point.at("height_m").get<double>());
+  } catch (const Json::exception&) {
+    return {};
+  }
+  return out;
 }
 
 std::optional<glm::dvec3> parse_spawn(std::string_view body) {

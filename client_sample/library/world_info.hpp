@@ -5,9 +5,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "core/world/manifest.hpp"
 #include "protocol/interest_area.hpp"
 
 namespace talus::client {
@@ -25,6 +27,13 @@ struct WorldInfo {
 
 /// Nothing unless every field is there, of its type and within the limits of the protocol.
 std::optional<WorldInfo> parse_world_info(std::string_view manifest_json);
+
+/// The world itself, to be evaluated here (core/world, core/mesh). Nothing when this build would not give the server's
+/// chunks: another generator version, or parameters it does not know.
+std::optional<Manifest> manifest_of(const WorldInfo& info);
+
+/// `height_m` of each place in the answer of GET /v1/worlds/{world}/points; empty unless all are there.
+std::vector<double> parse_heights(std::string_view json);
 
 /// The place in the answer of GET /v1/worlds/{world}/spawn.
 std::optional<glm::dvec3> parse_spawn(std::string_view json);

@@ -49,6 +49,8 @@ class WorldStream::Viewer {
     connection_.close();
   }
 
+  void stall() { connection_.stall(); }
+
   const std::optional<WorldInfo>& info() const { return info_; }
 
  private:
@@ -72,15 +74,16 @@ class WorldStream::Viewer {
   void take(std::span<const std::byte> bytes) {
     auto decoded = protocol::decode(bytes);
     if (!decoded) {
-      return fail({ErrorCode::kProtocol, "a message of the server: " + std::string(describe(decoded.error()))});
+      return break_off("a message of the server: " + std::string(describe(decoded.error())));
     }
     const Message& message = decoded->message;
     if (const auto* chunk = std::get_if<protocol::ChunkHead>(&message)) {
-      if (!info_) return fail({ErrorCode::kProtocol, "a chunk came before the welcome"});
+      if (!info_) return break_off("a chunk came before the welcome");
       if (handlers_.on_chunk) handlers_.on_chunk({*chunk, decoded->payload, bytes.size()});
       if (!options_.gives_credit_itself) give_credit(bytes.size());
     } else if (const auto* strip = std::get_if<protocol::StripHead>(&message)) {
-      if (!info_) return fail({ErrorCode::kProtocol, "a strip came before the welcome"});
+      if (!info_) return break_off("a strip came before the welcome");
+      if (strip->strip.key.lod == 0) return break_off("a strip of LOD 0, which nothing is finer than");
       if (handlers_.on_strip) handlers_.on_strip({*strip, decoded->payload, bytes.size()});
       if (!options_.gives_credit_itself) give_credit(bytes.size());
     } else if (const auto* leave = std::get_if<protocol::Leave>(&message)) {
@@ -95,21 +98,23 @@ class WorldStream::Viewer {
       begin(*welcome);
     } else if (const auto* refused = std::get_if<protocol::Refused>(&message)) {
       fail({ErrorCode::kRefused,
-            "the server refused (" + std::string(name_of(refused->reason)) + "): " + refused->message});
+            "the server refused (" + std::string(name_of(refused->reason)) + "): " + refused->message,
+            refused->reason == protocol::RefusedReason::kBusy});
     } else if (const auto* bye = std::get_if<protocol::Bye>(&message)) {
       const std::string text = bye->message.empty() ? "" : ": " + bye->message;
-      fail({ErrorCode::kBye, "the server said goodbye (" + std::string(name_of(bye->reason)) + ")" + text});
+      fail({ErrorCode::kBye, "the server said goodbye (" + std::string(name_of(bye->reason)) + ")" + text,
+            bye->reason != protocol::ByeReason::kMalformed});
     }
   }
 
   void begin(const protocol::Welcome& welcome) {
-    if (info_) return fail({ErrorCode::kProtocol, "a second welcome"});
+    if (info_) return break_off("a second welcome");
     if (welcome.version < protocol::kVersionLow || welcome.version > protocol::kVersionHigh) {
-      return fail({ErrorCode::kProtocol, "the server welcomed a version that was not offered"});
+      return break_off("the server welcomed a version that was not offered");
     }
     info_ = parse_world_info(welcome.manifest_json);
-    if (!info_) return fail({ErrorCode::kProtocol, "the manifest of the welcome cannot be read"});
-    say_what_is_held();
+    if (!info_) return break_off("the manifest of the welcome cannot be read");
+    if (options_.held_world_hash.empty() || options_.held_world_hash == info_->world_hash) say_what_is_held();
     if (waiting_view_) send(*std::exchange(waiting_view_, std::nullopt));
     if (waiting_want_) send(*std::exchange(waiting_want_, std::nullopt));
     if (handlers_.on_welcome) handlers_.on_welcome(*info_);
@@ -129,6 +134,9 @@ class WorldStream::Viewer {
       send(protocol::Held{{}, {}, part(options_.held_strips, at)});
     }
   }
+
+  /// The server broke the protocol, and would again.
+  void break_off(std::string what) { fail({ErrorCode::kProtocol, std::move(what), false}); }
 
   /// Ends the session for a reason of the protocol; the reason is what on_closed says.
   void fail(ClientError error) {
@@ -166,6 +174,9 @@ void WorldStream::give_credit(std::uint64_t bytes) {
 }
 void WorldStream::close() {
   viewer_->close();
+}
+void WorldStream::stall() {
+  viewer_->stall();
 }
 const std::optional<WorldInfo>& WorldStream::info() const {
   return viewer_->info();

@@ -7,7 +7,8 @@
 // Chunks come nearest first and are the engine's from then on; on_leave says which it may forget. Credit is given back
 // as soon as on_chunk returns, so an engine that falls behind is sent less: decode inside it, or hold the bytes and
 // set `gives_credit_itself`. After a lost connection make a new stream and pass what is still held as `held`: those
-// chunks are not sent again. No handler may destroy its stream. Owner: the thread of the loop.
+// chunks are not sent again; a WorldViewer does so by itself. No handler may destroy its stream. Owner: the thread of
+// the loop.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,7 @@ struct StreamOptions {
   std::vector<protocol::HeldChunk> held;            ///< sent right behind the hello
   std::vector<std::uint8_t> held_faces;             ///< head.faces of each of `held`
   std::vector<StripKey> held_strips;
+  std::string held_world_hash;  ///< of which world; of another nothing is said to be held. Empty: of any
 };
 
 struct ArrivedChunk {
@@ -77,6 +79,8 @@ class WorldStream {
   void give_credit(std::uint64_t bytes);
   /// Says bye.
   void close();
+  /// See Connection::stall.
+  void stall();
 
   /// Nothing before the welcome.
   const std::optional<WorldInfo>& info() const;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client_sample/library/world_stream.hpp"
+#include "client_sample/library/world_viewer.hpp"
 #include "tests/sim/running_server.hpp"
 
 namespace talus::server {
@@ -29,7 +30,7 @@ class ClientOver : public testing::TestWithParam<Carrier> {
     return done();
   }
 
-  RunningServer server;
+  std::optional<RunningServer> server{std::in_place};
   client::Loop loop;
 };
 
@@ -38,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Carriers, ClientOver, testing::Values(Carrier::kWebSock
 
 TEST_P(ClientOver, AViewBecomesCompleteAndIsItsInterestArea) {
   client::StreamOptions options;
-  options.server = address_of(server, GetParam());
+  options.server = address_of(*server, GetParam());
   std::vector<ChunkKey> came;
   std::optional<protocol::ViewAccepted> accepted;
   std::optional<client::ClientError> closed;
@@ -68,9 +69,37 @@ TEST_P(ClientOver, AViewBecomesCompleteAndIsItsInterestArea) {
   EXPECT_EQ(closed->message, "closed as asked");
 }
 
+TEST_P(ClientOver, AViewerOutlivesItsServerAndIsSentNothingTwice) {
+  client::ViewerOptions options;
+  options.server = address_of(*server, GetParam());
+  options.retry_min = std::chrono::milliseconds(20);
+  client::WorldViewer viewer(loop, options);
+  protocol::View view;
+  view.position = {0, 600, 0};
+  view.far_m = 300;
+  viewer.look(view);
+  std::size_t completes = 0;
+  const auto take_all = [&] {
+    while (auto event = viewer.next()) completes += std::holds_alternative<client::Complete>(*event) ? 1U : 0U;
+  };
+  ASSERT_TRUE(run_until([&] { return take_all(), completes == 1; }));
+  const std::size_t held = viewer.held();
+  ASSERT_GT(held, 20U);
+
+  Settings settings = quiet_settings();
+  settings.listen = (*server)->http_address();
+  settings.tcp_listen = (*server)->tcp_address();
+  server.reset();
+  ASSERT_TRUE(run_until([&] { return !viewer.is_connected(); }));
+  server.emplace(settings);
+  ASSERT_TRUE(run_until([&] { return take_all(), completes == 2; }));
+  EXPECT_EQ(server->count(Count::kChunksSent), 0U);
+  EXPECT_EQ(viewer.held(), held);
+}
+
 TEST_P(ClientOver, AServerThatKnowsNoSuchWorldSaysSo) {
   client::StreamOptions options;
-  options.server = address_of(server, GetParam());
+  options.server = address_of(*server, GetParam());
   options.world = "nowhere";
   std::optional<client::ClientError> closed;
   client::StreamHandlers handlers;

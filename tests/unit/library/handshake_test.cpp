@@ -101,6 +101,26 @@ TEST(WorldInfo, RefusesWhatNoWorldHas) {
   for (const char* bad : {"", "[]", "{}", "null", "{\"name\":", "\xFF"}) EXPECT_FALSE(parse_world_info(bad)) << bad;
 }
 
+TEST(WorldInfo, GivesTheWorldItselfToEvaluate) {
+  Manifest manifest;
+  manifest.name = "other";
+  manifest.seed = 18446744073709551615U;
+  manifest.values[parameter_index("erosion.octaves")] = 3;
+  const auto info = parse_world_info(protocol::manifest_json(manifest));
+  ASSERT_TRUE(info);
+  EXPECT_EQ(manifest_of(*info), manifest);
+  WorldInfo newer = *info;
+  newer.world_hash.front() = newer.world_hash.front() == '0' ? '1' : '0';
+  EXPECT_FALSE(manifest_of(newer));
+}
+
+TEST(Heights, AreAllThereOrNone) {
+  EXPECT_EQ(parse_heights(R"({"points":[{"height_m":1.5},{"height_m":-2}]})"), (std::vector<double>{1.5, -2}));
+  for (const char* bad : {"", "[]", "{}", R"({"points":[{"height_m":1},{}]})", R"({"points":3})"}) {
+    EXPECT_TRUE(parse_heights(bad).empty()) << bad;
+  }
+}
+
 TEST(Spawn, IsAPlaceOrNothing) {
   EXPECT_EQ(parse_spawn(R"({"x":1.5,"y":-2,"z":3e9})"), (glm::dvec3{1.5, -2, 3e9}));
   for (const char* bad : {"", "{}", R"({"x":1,"y":2})", R"({"x":"1","y":2,"z":3})", "[1,2,3]"})

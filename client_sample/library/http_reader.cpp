@@ -1,0 +1,113 @@
+#include "client_sample/library/http_reader.hpp"
+
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include <http_parser.h>
+
+namespace talus::client {
+namespace {
+
+constexpr std::size_t kFieldBytesMax = 64 * 1024;
+
+}  // namespace
+
+/// What http_parser has found so far.
+struct HttpReader::Parsing {
+  http_parser parser{};
+  http_parser_settings settings{};
+  HttpAnswer answer;
+  std::string name;
+  std::string value;
+  bool in_value = false;
+  std::size_t field_bytes = 0;
+  bool is_whole = false;
+  bool is_too_large = false;
+  bool is_kept_open = false;
+
+  Parsing() {
+    http_parser_init(&parser, HTTP_RESPONSE);
+    parser.data = this;
+    http_parser_settings_init(&settings);
+    settings.on_header_field = on_name;
+    settings.on_header_value = on_value;
+    settings.on_headers_complete = on_head_end;
+    settings.on_body = on_body;
+    settings.on_message_complete = on_end;
+  }
+
+  static Parsing& of(http_parser* parser) { return *static_cast<Parsing*>(parser->data); }
+
+  void end_field() {
+    if (!name.empty()) answer.fields[name] = value;
+    name.clear();
+    value.clear();
+    in_value = false;
+  }
+  int take_field(std::string& into, std::string_view text) {
+    field_bytes += text.size();
+    is_too_large = is_too_large || field_bytes > kFieldBytesMax;
+    into.append(text);
+    return is_too_large ? 1 : 0;
+  }
+
+  static int on_name(http_parser* parser, const char* at, std::size_t size) {
+    Parsing& self = of(parser);
+    if (self.in_value) self.end_field();
+    std::string lower(at, size);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return self.take_field(self.name, lower);
+  }
+  static int on_value(http_parser* parser, const char* at, std::size_t size) {
+    Parsing& self = of(parser);
+    self.in_value = true;
+    return self.take_field(self.value, {at, size});
+  }
+  static int on_head_end(http_parser* parser) {
+    Parsing& self = of(parser);
+    self.end_field();
+    self.answer.status = parser->status_code;
+    return 0;
+  }
+  static int on_body(http_parser* parser, const char* at, std::size_t size) {
+    Parsing& self = of(parser);
+    self.is_too_large = size > kHttpBodyBytesMax - self.answer.body.size();
+    if (self.is_too_large) return 1;
+    self.answer.body.append(at, size);
+    return 0;
+  }
+  static int on_end(http_parser* parser) {
+    Parsing& self = of(parser);
+    self.is_whole = true;
+    self.is_kept_open = http_should_keep_alive(parser) != 0;
+    http_parser_pause(parser, 1);
+    return 0;
+  }
+};
+
+HttpReader::HttpReader() : parsing_(std::make_unique<Parsing>()) {}
+HttpReader::~HttpReader() = default;
+
+HttpReader::State HttpReader::feed(std::span<const char> bytes) {
+  Parsing& p = *parsing_;
+  if (p.is_whole) return State::kBroken;
+  const std::size_t used = http_parser_execute(&p.parser, &p.settings, bytes.data(), bytes.size());
+  if (p.is_too_large) return State::kTooLarge;
+  if (p.is_whole) return used == bytes.size() ? State::kWhole : State::kBroken;
+  return HTTP_PARSER_ERRNO(&p.parser) == HPE_OK ? State::kMore : State::kBroken;
+}
+
+HttpAnswer HttpReader::take() {
+  HttpAnswer answer = std::move(parsing_->answer);
+  const bool is_kept_open = parsing_->is_kept_open;
+  parsing_ = std::make_unique<Parsing>();
+  parsing_->is_kept_open = is_kept_open;
+  return answer;
+}
+
+bool HttpReader::is_kept_open() const {
+  return parsing_->is_kept_open;
+}
+
+}  // namespace talus::client
