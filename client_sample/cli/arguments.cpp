@@ -18,6 +18,7 @@ constexpr const char* kFooter = R"(Examples:
   talus fly --from 0,400,0 --to 2000,400,0 --speed 50 --seconds 60
   talus fly --viewers 50 --seconds 300 --json
   talus fly --until-complete --far 2000 --seconds 60     # time to a complete view
+  talus load --fly 50 --fetch 1 --metrics http://127.0.0.1:9090   # a crowd, and one who asks for chunks over HTTP
   talus map --area 0,0,64 -o map.png                     # 64 km around the origin
   talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
   talus section --from -2000,0 --to 2000,500 -o cut.png
@@ -26,7 +27,7 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes:
   0 done   1 server, network or file failed   2 wrong command line   3 chunk without a surface
-  4 manifest with faults   5 fly: a viewer failed or its view was never complete)";
+  4 manifest with faults   5 fly: a viewer failed or its view was never complete; load: faults)";
 
 void add_server(CLI::App& app, ServerOptions& server) {
   app.add_option("--server", server.url, "URL of the server; fly also takes tcp://HOST:PORT")->capture_default_str();
@@ -43,6 +44,7 @@ struct Arguments {
   GetOptions get;
   InfoOptions info;
   FlyOptions fly;
+  LoadOptions load;
   MapOptions map;
   SectionOptions section;
   SurveyOptions survey;
@@ -96,6 +98,25 @@ void add_fly(CLI::App& app, Arguments& arguments) {
   fly->add_flag("--decode", options.decodes, "decode every mesh, as a real viewer does");
   fly->add_flag("--json", options.is_json, "the summary as one line of JSON; progress goes to standard error");
   fly->callback([&arguments] { arguments.command = [&arguments] { return cli::fly(arguments.fly); }; });
+}
+
+void add_load(CLI::App& app, Arguments& arguments) {
+  LoadOptions& options = arguments.load;
+  CLI::App* load =
+      app.add_subcommand("load", "Many clients at once: latencies, throughput, and whether all they got is right");
+  load->add_option("scenario", options.scenario, "TOML file, as those in client_sample/load/scenarios");
+  add_server(*load, options.server);
+  load->add_option("--tcp", options.tcp, "where clients over TCP connect")->capture_default_str();
+  load->add_option("--metrics", options.metrics,
+                   "the server's admin door, as http://127.0.0.1:9090: its own counters beside ours");
+  load->add_option("--seconds", options.seconds, "how long; else the scenario's, or 30")
+      ->check(CLI::Range(0.1, 86400.0));
+  for (std::size_t i = 0; i < load::kBotKinds; ++i) {
+    const std::string name(load::name_of(static_cast<load::BotKind>(i)));
+    load->add_option("--" + name, options.counts[i], "how many of the kind")->check(CLI::Range(0, 10000));
+  }
+  load->add_flag("--json", options.is_json, "the report as one line of JSON; progress goes to standard error");
+  load->callback([&arguments] { arguments.command = [&arguments] { return cli::load(arguments.load); }; });
 }
 
 std::vector<std::string> layer_names() {
@@ -176,6 +197,7 @@ int run(int argc, char** argv) {
   add_get(app, arguments);
   add_info(app, arguments);
   add_fly(app, arguments);
+  add_load(app, arguments);
   add_map(app, arguments);
   add_section(app, arguments);
   add_survey(app, arguments);

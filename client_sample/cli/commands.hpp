@@ -1,12 +1,14 @@
 // What the program can do; each returns an exit code and has said on standard error why it is not kDone.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
 #include <glm/vec3.hpp>
 
 #include "client_sample/cli/exit_code.hpp"
+#include "client_sample/load/scenario.hpp"
 #include "core/grid/chunk_key.hpp"
 
 namespace talus::cli {
@@ -47,6 +49,22 @@ struct FlyOptions {
   bool is_json = false;
 };
 ExitCode fly(const FlyOptions& options);
+
+struct LoadOptions {
+  ServerOptions server;
+  std::string tcp = "tcp://127.0.0.1:8081";
+  std::string metrics;   ///< URL of the admin door; empty: the server is not asked what it counted
+  std::string scenario;  ///< TOML file; empty: only what `counts` says
+  std::array<int, load::kBotKinds> counts = [] {
+    std::array<int, load::kBotKinds> out{};
+    out.fill(-1);
+    return out;
+  }();                 ///< bots of each kind; below 0: as the scenario says
+  double seconds = 0;  ///< 0: as the scenario says
+  bool is_json = false;
+};
+/// Many clients at once; kIncomplete if anything was wrong with what they got.
+ExitCode load(const LoadOptions& options);
 
 struct MapOptions {
   std::string manifest;  ///< file; empty: the default world

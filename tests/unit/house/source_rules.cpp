@@ -55,8 +55,8 @@ const std::vector<Room>& rooms() {
     out.push_back({"server/app", below});
 
     out.push_back({"client_sample/library", {"core", "protocol"}});
-    out.push_back({"client_sample/cli", {"core", "protocol", "client_sample/library"}});
     out.push_back({"client_sample/load", {"core", "protocol", "client_sample/library"}});
+    out.push_back({"client_sample/cli", {"core", "protocol", "client_sample/library", "client_sample/load"}});
     return out;
   }();
   return all;
