@@ -63,6 +63,17 @@ class Framing {
   virtual std::vector<std::byte> close(CloseCode code, std::string_view reason) const = 0;
 };
 
+/// Makes room for the next message. The room of a rare long one is given back: most sessions are quiet most of the
+/// time, and what each keeps, thousands keep.
+inline void empty_message(std::vector<std::byte>& message) {
+  constexpr std::size_t kKeptBytes = 1024;
+  if (message.capacity() > kKeptBytes) {
+    message = std::vector<std::byte>();  // `= {}` would keep the room
+  } else {
+    message.clear();
+  }
+}
+
 /// RFC 6455, server side: masked frames required, binary messages only, of at most `message_bytes_max`.
 std::unique_ptr<Framing> make_websocket_framing(std::size_t message_bytes_max);
 /// `u32 message_bytes`, little-endian, before each message.

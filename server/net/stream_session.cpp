@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <utility>
 
@@ -22,7 +23,9 @@ using protocol::ByeReason;
 using protocol::Message;
 using protocol::RefusedReason;
 
-constexpr std::size_t kReadBytes = 16 * 1024;
+/// What is read at once: several of a viewer's messages. Each session keeps so much for as long as it lasts, so a
+/// longer message is put together from several reads.
+constexpr std::size_t kReadBytes = 1024;
 constexpr double kLingerS = 2;
 constexpr double kMessageBytesPerToken = 4096;
 
@@ -93,7 +96,8 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   ConnectionPass pass_;
   std::unique_ptr<Framing> framing_;
   std::optional<std::size_t> world_;
-  std::vector<std::byte> received_;
+  std::vector<std::byte> received_;  ///< behind the handshake, until the first read
+  std::array<std::byte, kReadBytes> inbox_;
 
   Phase phase_ = Phase::kHello;
   bool is_ended_ = false;
@@ -128,14 +132,14 @@ StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Socket socket, C
 
 Awaitable<void> StreamSession::read_loop() {
   take(received_);
-  received_.resize(kReadBytes);
+  received_ = std::vector<std::byte>();
   while (!is_ended_) {
-    const asio::mutable_buffer into(received_.data(), received_.size());
+    const asio::mutable_buffer into(inbox_.data(), inbox_.size());
     const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
     if (error) break;
     const Instant start = net_.clock.now();
     received_at_ = start;
-    take(std::span(received_).first(got));
+    take(std::span(inbox_).first(got));
     net_.metrics.record(Hop::kReadLoop, net_.clock.now() - start);
   }
   end();

@@ -15,7 +15,7 @@ class TcpFraming final : public Framing {
   void feed(std::span<const std::byte> bytes) override { input_ = bytes; }
 
   std::optional<Inbound> next() override {
-    if (is_whole_) message_.clear();
+    if (is_whole_) empty_message(message_);
     is_whole_ = false;
     while (!input_.empty()) {
       if (head_size_ < kHeadBytes) {

@@ -32,7 +32,7 @@ class WebSocketFraming final : public Framing {
   void feed(std::span<const std::byte> bytes) override { input_ = bytes; }
 
   std::optional<Inbound> next() override {
-    if (is_whole_) message_.clear();
+    if (is_whole_) empty_message(message_);
     is_whole_ = false;
     while (!is_broken_) {
       wslay_frame_iocb part{};

@@ -54,7 +54,8 @@ bool Viewer::on_message(const protocol::Message& message) {
     // would be left and then sent again.
     is_stale_ = is_stale_ || view_.has_value() || !want_.empty();
   } else if (const auto* want = std::get_if<protocol::Want>(&message)) {
-    want_.clear();
+    want_ = std::vector<ChunkKey>();
+    want_.reserve(want->chunks.size());
     for (const protocol::HeldChunk& chunk : want->chunks) want_.push_back(chunk.key);
     want_strips_ = want->strips;
     is_stale_ = true;
@@ -98,7 +99,7 @@ void Viewer::hold(const protocol::Held& held) {
       known->faces = faces;
       --wanted_;
     } else if (chunks_.size() + fresh.size() < kHeldKeysMax) {
-      fresh.push_back({{chunk.key, {}}, 0.0, Phase::kHeld, faces});
+      fresh.push_back({{chunk.key, {}}, Phase::kHeld, faces, 0.0});
     }
   }
   chunks_.insert(chunks_.end(), fresh.begin(), fresh.end());
@@ -112,7 +113,7 @@ void Viewer::hold(const protocol::Held& held) {
       known->phase = Phase::kHeld;
       --wanted_;
     } else if (strips_.size() + fresh.size() < kHeldKeysMax) {
-      fresh.push_back({piece, 0.0, Phase::kHeld, 0});
+      fresh.push_back({piece, Phase::kHeld, 0, 0.0});
     }
   }
   strips_.insert(strips_.end(), fresh.begin(), fresh.end());
@@ -126,10 +127,10 @@ Viewer::States Viewer::target() const {
     protocol::interest_area(view_->view, shape_, area);
     out.reserve(area.size() + want_.size());
     for (const ChunkKey& key : area) {
-      out.push_back({{key, {}}, protocol::chunk_urgency(view_->view, shape_, key), Phase::kWanted, 0});
+      out.push_back({{key, {}}, Phase::kWanted, 0, protocol::chunk_urgency(view_->view, shape_, key)});
     }
   }
-  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({{want_[i], {}}, want_urgency(i), Phase::kWanted, 0});
+  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({{want_[i], {}}, Phase::kWanted, 0, want_urgency(i)});
   sort_unique(out);
   return out;
 }
@@ -168,11 +169,11 @@ void Viewer::for_each_strip_of(const State& finer, Visit visit) {
 Viewer::States Viewer::strips_of_target() {
   States out;
   for (std::size_t i = 0; i < want_strips_.size(); ++i) {
-    out.push_back({{want_strips_[i].key, want_strips_[i].face}, want_urgency(i), Phase::kWanted, 0});
+    out.push_back({{want_strips_[i].key, want_strips_[i].face}, Phase::kWanted, 0, want_urgency(i)});
   }
   for (const State& chunk : chunks_) {
     for_each_strip_of(chunk, [&](const Piece& strip, double urgency) {
-      out.push_back({strip, kStripUrgency * urgency, Phase::kWanted, 0});
+      out.push_back({strip, Phase::kWanted, 0, kStripUrgency * urgency});
     });
   }
   sort_unique(out);
@@ -256,7 +257,7 @@ void Viewer::want_strips_of(const State& finer) {
     const auto at = std::lower_bound(strips_.begin(), strips_.end(), strip,
                                      [](const State& state, const Piece& p) { return state.piece < p; });
     if (at != strips_.end() && at->piece == strip) return;
-    strips_.insert(at, {strip, kStripUrgency * urgency, Phase::kWanted, 0});
+    strips_.insert(at, {strip, Phase::kWanted, 0, kStripUrgency * urgency});
     queue_.push_back({strip, kStripUrgency * urgency});
     std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
     ++wanted_;
@@ -280,6 +281,7 @@ Viewer::Delivery Viewer::deliver(const Piece& piece, std::uint64_t message_bytes
 std::optional<protocol::Idle> Viewer::take_idle() {
   if (!is_idle_due_ || is_stale_ || wanted_ != 0 || in_flight_ != 0) return std::nullopt;
   is_idle_due_ = false;
+  queue_ = std::vector<WantedPiece>();  // empty, but with room for a whole view: who stands still need not keep it
   return protocol::Idle{view_ ? view_->sequence : 0, chunks_sent_};
 }
 

@@ -84,9 +84,9 @@ class Viewer {
   enum class Phase : std::uint8_t { kWanted, kInFlight, kHeld };
   struct State {
     Piece piece;
-    double urgency = 0.0;
     Phase phase = Phase::kWanted;
     std::uint8_t faces = 0;  ///< of a held chunk
+    double urgency = 0.0;
   };
   /// Sorted by piece, each once. A view has some 2,500 of these and changes ten times a second: a merge of two sorted
   /// vectors costs a tenth of what hash maps cost.

@@ -18,9 +18,17 @@ namespace talus::server {
 
 class Peer {
  public:
-  /// `address` as a server says it: "127.0.0.1:43210".
-  explicit Peer(std::string_view address, int receive_bytes = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// `address` as a server says it: "127.0.0.1:43210". Comes from 127.0.0.1 + `host`, so that many peers need not share
+  /// one address and its ports.
+  explicit Peer(std::string_view address, int receive_bytes = 0, std::uint32_t host = 0)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     if (receive_bytes != 0) ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_bytes, sizeof receive_bytes);
+    if (host != 0) {
+      sockaddr_in from{};
+      from.sin_family = AF_INET;
+      from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + host);
+      ::bind(socket_, reinterpret_cast<const sockaddr*>(&from), sizeof from);
+    }
     wait_at_most(60);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -37,6 +45,13 @@ class Peer {
   ~Peer() { close(); }
 
   bool is_connected() const { return is_connected_; }
+  /// Our own, as the kernel writes it.
+  in_port_t port() const {
+    sockaddr_in own{};
+    socklen_t length = sizeof own;
+    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &length);
+    return own.sin_port;
+  }
   void close() {
     if (socket_ >= 0) ::close(socket_);
     socket_ = -1;
@@ -80,6 +95,7 @@ class Peer {
     }
     std::string out = left_.substr(0, size);
     left_.erase(0, out.size());
+    if (left_.empty()) left_.shrink_to_fit();  // a test may hold thousands of these
     return out;
   }
   std::string take_until(std::string_view mark) {

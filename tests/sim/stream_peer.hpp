@@ -21,8 +21,9 @@ class StreamPeer {
  public:
   enum class Carrier { kWebSocket, kTcp };
 
-  StreamPeer(std::string_view address, Carrier carrier = Carrier::kWebSocket, int receive_bytes = 0)
-      : peer(address, receive_bytes), carrier_(carrier) {
+  StreamPeer(std::string_view address, Carrier carrier = Carrier::kWebSocket, int receive_bytes = 0,
+             std::uint32_t host = 0)
+      : peer(address, receive_bytes, host), carrier_(carrier) {
     if (carrier == Carrier::kTcp) return;
     peer.send(get_request("/v1/worlds/default/stream",
                           "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
