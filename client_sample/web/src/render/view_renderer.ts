@@ -11,7 +11,7 @@ import { TerrainLayer } from './terrain_layer';
 
 const kNear = 0.25;
 const kFieldOfView = 58; // degrees, vertical
-const kExposure = 0.42;
+const kExposure = 0.46;
 
 export interface CameraPose {
   x: number; // metres, world

@@ -17,7 +17,7 @@ uniform float uTime;
 uniform float uExposure;
 
 const vec3 kAbsorbed = vec3(0.36, 0.085, 0.062);  // per metre of coastal water
-const vec3 kWhite = vec3(0.94, 1.0, 1.07);  // the eye has got used to a low sun
+const vec3 kWhite = vec3(0.97, 1.0, 1.045);  // the eye has got used to a low sun
 const float kNothing = 1e9;
 
 // Distance along the unit of `ray` (whose z is -1 in camera space) to what was drawn there.
@@ -31,8 +31,10 @@ float drawnDistance(vec2 at, float rayLength) {
 vec2 waveSlope(vec2 at, float distance) {
   vec2 wind = vec2(0.83, 0.56);
   vec2 slope = (texture(uNoise, at / 64.0 + wind * uTime * 0.021).gb - 0.5) * 0.30;
-  slope += (texture(uNoise, at.yx / 32.0 - wind * uTime * 0.037).bg - 0.5) * 0.32;
-  slope += (texture(uNoise, at / 8.0 - wind.yx * uTime * 0.06).gb - 0.5) * 0.34 * (1.0 - smoothstep(80.0, 500.0, distance));
+  // Turned against each other, so that no row of crests repeats.
+  const mat2 turn = mat2(0.79, 0.61, -0.61, 0.79);
+  slope += (texture(uNoise, turn * at / 27.0 - wind * uTime * 0.037).bg - 0.5) * 0.32;
+  slope += (texture(uNoise, at * turn / 8.0 - wind.yx * uTime * 0.06).gb - 0.5) * 0.34 * (1.0 - smoothstep(80.0, 500.0, distance));
   slope += (texture(uNoise, at / 512.0 + wind * uTime * 0.004).gb - 0.5) * 0.12;
   return slope;
 }

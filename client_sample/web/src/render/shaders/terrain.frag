@@ -6,11 +6,12 @@ in vec3 vNormal;
 in float vRidge;
 in vec4 vCoverA;
 in vec3 vCoverB;
+in vec3 vRock;
 out vec4 colour;
 uniform sampler2D uNoise;
 uniform sampler2D uStrataThick;
 uniform sampler2D uStrataThin;
-uniform vec3 uPalette[7];  // linear
+uniform vec3 uPalette[16];  // linear
 uniform vec3 uSkyAbove;    // irradiance / pi on a level plane from the sky
 uniform vec3 uSkyAround;   // the same on an upright one
 
@@ -67,13 +68,14 @@ vec3 rockColour(float warp, float steep, Detail stone, Detail boulder) {
   float height = vPlace.y + warp;
   vec4 thick = texture(uStrataThick, vec2(height / 560.0, 0.5));
   vec4 thin = texture(uStrataThin, vec2((height + boulder.shape * 2.0) / 93.0, 0.5));
-  vec3 tint = thick.rgb * 2.0 * mix(vec3(1.0), thin.rgb * 2.0, 0.55 + 0.35 * steep);
+  // The layer's own rock gives the hue; the tables add beds that are thinner than a cell.
+  vec3 tint = mix(vec3(1.0), thick.rgb * 2.0, 0.5) * mix(vec3(1.0), thin.rgb * 2.0, 0.40 + 0.35 * steep);
   float weathered = 0.66 + 0.52 * boulder.grain + 0.42 * stone.grain + 0.18 * stone.shape;
   // Water stains faces from above: streaks many times as high as wide.
   float along = abs(vNormal.x) > abs(vNormal.z) ? vPlace.z : vPlace.x;
   float stain = texture(uNoise, vec2(along / 64.0, vPlace.y / 1024.0)).a;
   weathered *= 1.0 - smoothstep(0.25, 0.6, steep) * 0.55 * smoothstep(0.38, 0.62, stain);
-  return uPalette[0] * vec3(0.97, 1.0, 1.06) * tint * weathered;
+  return vRock * vec3(1.0, 1.0, 1.03) * tint * weathered;
 }
 
 vec3 grassColour(float damp, Detail fine, Detail stone, Detail boulder, Detail hill) {
@@ -129,8 +131,10 @@ void main() {
   float warp = hill.shape * 70.0 + boulder.shape * 7.0 + stone.shape * 0.8;
   vec3 rock = rockColour(warp, steep, stone, boulder);
   vec3 scree = uPalette[1] * (0.62 + 0.62 * fine.grain + 0.18 * stone.shape) * mix(vec3(1.0), rock / max(uPalette[0], 0.05), 0.4);
-  vec3 soil = uPalette[2] * (0.78 + 0.25 * stone.shape + 0.25 * fine.grain);
   vec3 grass = grassColour(damp, fine, stone, boulder, hill);
+  // Soil is never quite bare: withered stalks take its red away, more on gentle ground.
+  vec3 earth = mix(uPalette[2], vec3(dot(uPalette[2], vec3(0.3, 0.6, 0.1))), 0.30);
+  vec3 soil = mix(earth * (0.78 + 0.25 * stone.shape + 0.25 * fine.grain), grass, 0.42 * smoothstep(0.30, 0.05, steep));
   float wet = 1.0 - smoothstep(0.3, 2.2, vPlace.y + stone.shape * 0.8);
   vec3 sand = uPalette[4] * (0.88 + 0.12 * stone.shape + 0.10 * fine.shape) * mix(1.0, 0.52, wet);
   vec3 snow = uPalette[5] * (0.93 + 0.05 * boulder.shape);

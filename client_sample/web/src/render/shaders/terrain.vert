@@ -8,12 +8,14 @@ uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec3 uCameraPlace;  // xz: camera modulo the texture period; y: height above the sea
+uniform vec3 uPalette[16];  // linear
 out vec3 vRelative;
 out vec3 vPlace;
 out vec3 vNormal;
 out float vRidge;
 out vec4 vCoverA;  // rock, scree, soil, grass
 out vec3 vCoverB;  // sand, snow, stream bed
+out vec3 vRock;    // the layer's colour
 
 void main() {
   vec4 relative = modelMatrix * vec4(position.xyz, 1.0);
@@ -24,6 +26,8 @@ void main() {
   float material = position.w;
   vCoverA = vec4(equal(vec4(material), vec4(0.0, 1.0, 2.0, 3.0)));
   vCoverB = vec3(equal(vec3(material), vec3(4.0, 5.0, 6.0)));
-  if (material > 6.5) vCoverA.x = 1.0;
+  bool isRock = material > 6.5;
+  if (isRock) vCoverA.x = 1.0;
+  vRock = uPalette[isRock ? min(int(material + 0.5), 15) : 0];
   gl_Position = projectionMatrix * (viewMatrix * relative);
 }
