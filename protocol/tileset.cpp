@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -37,13 +38,13 @@ double error_of(const WorldShape& shape, int lod) {
   return std::ldexp(shape.voxel_m, lod);
 }
 
-/// The box of `columns` columns of `lod` on either side from (x, z), in the tileset's frame: z up, y against world z.
-/// Vertices leave the world's heights by at most a step of the coarsest lattice (extraction keeps them off samples); a
-/// step more is for rounding.
-Json box_json(const WorldShape& shape, const glm::dvec2& low_m, double side_m, int lod, const glm::dvec2& origin_m) {
+/// A square of ground as a box in the tileset's frame: z up, y against world z. Vertices leave the heights by at most a
+/// step of the coarsest lattice (extraction keeps them off samples); a step more is for rounding.
+Json box_json(const WorldShape& shape, const glm::dvec2& low_m, double side_m, int lod, const glm::dvec2& origin_m,
+              const glm::dvec2& heights_m) {
   const double slack_m = 2.0 * error_of(shape, std::min(lod, kLodMax)) / kStepsPerCell;
-  const double bottom_m = shape.height_range_m.x - slack_m;
-  const double top_m = shape.height_range_m.y + slack_m;
+  const double bottom_m = heights_m.x - slack_m;
+  const double top_m = heights_m.y + slack_m;
   const double half_m = side_m / 2;
   return {{"box",
            {low_m.x + half_m - origin_m.x, origin_m.y - low_m.y - half_m, (bottom_m + top_m) / 2, half_m, 0, 0, 0,
@@ -95,7 +96,7 @@ Json globe_json(const glm::dvec2& latitude_longitude_deg) {
 Json world_root(const WorldShape& shape) {
   const int lod = kWorldTreeLevels - 1;
   const double side_m = edge_of(shape, lod);
-  Json root{{"boundingVolume", box_json(shape, {-side_m / 2, -side_m / 2}, side_m, lod, {})},
+  Json root{{"boundingVolume", box_json(shape, {-side_m / 2, -side_m / 2}, side_m, lod, {}, shape.height_range_m)},
             {"geometricError", error_of(shape, lod)}};
   root.update(implicit_json("world", kWorldTreeLevels, ""));
   return root;
@@ -108,31 +109,73 @@ int root_lod(const WorldShape& shape, double km) {
   return lod;
 }
 
-Json local_root(const WorldShape& shape, const glm::dvec2& origin_m, double km) {
+/// The columns of root_lod that meet the square.
+ColumnSquare root_columns(const WorldShape& shape, const glm::dvec2& origin_m, double km) {
   const int lod = root_lod(shape, km);
-  const double edge_m = edge_of(shape, lod);
   const auto column = [&](double m) {
     const double limit = kChunkLimit;
-    return static_cast<std::int32_t>(std::clamp(std::floor(m / edge_m), -limit, limit));
+    return static_cast<std::int32_t>(std::clamp(std::floor(m / edge_of(shape, lod)), -limit, limit));
   };
-  const std::int32_t x0 = column(origin_m.x - km * 1000);
-  const std::int32_t x1 = column(origin_m.x + km * 1000);
-  const std::int32_t z0 = column(origin_m.y - km * 1000);
-  const std::int32_t z1 = column(origin_m.y + km * 1000);
-  const int columns = std::max(x1 - x0, z1 - z0) + 1;
-  const std::string query = "?origin=" + Json(origin_m.x).dump() + ",0," + Json(origin_m.y).dump();
-  Json children = Json::array();
-  for (std::int32_t z = z0; z <= z1; ++z) {
-    for (std::int32_t x = x0; x <= x1; ++x) {
-      const std::string url = std::to_string(lod) + "/" + std::to_string(x) + "/" + std::to_string(z);
-      Json child{{"boundingVolume", box_json(shape, {x * edge_m, z * edge_m}, edge_m, lod, origin_m)},
-                 {"geometricError", error_of(shape, lod)}};
-      child.update(implicit_json(url, lod + 1, query));
-      children.push_back(std::move(child));
+  const glm::dvec2 low_m = origin_m - km * 1000;
+  const glm::dvec2 high_m = origin_m + km * 1000;
+  const std::int32_t x = column(low_m.x);
+  const std::int32_t z = column(low_m.y);
+  return {lod, x, z, std::max(column(high_m.x) - x, column(high_m.y) - z) + 1};
+}
+
+/// What all tiles of a local tileset share.
+struct LocalFrame {
+  const WorldShape& shape;
+  glm::dvec2 origin_m;
+  std::string query;  ///< of content
+  ColumnSquare known;
+  std::span<const glm::dvec2> heights_m;  ///< of `known`
+};
+
+glm::dvec2 both(const glm::dvec2& a, const glm::dvec2& b) {
+  return {std::min(a.x, b.x), std::max(a.y, b.y)};
+}
+
+/// The tile of one column, and its heights. Tiles are spelled out down to the columns of known heights, where implicit
+/// trees begin, since a box of an implicit tile is as high as that of its tree.
+std::pair<Json, glm::dvec2> column_json(const LocalFrame& frame, int lod, std::int32_t x, std::int32_t z) {
+  const std::string url = std::to_string(lod) + "/" + std::to_string(x) + "/" + std::to_string(z);
+  Json below;
+  glm::dvec2 heights_m{};
+  if (lod == frame.known.lod) {
+    below = implicit_json(url, lod + 1, frame.query);
+    heights_m = frame.heights_m[static_cast<std::size_t>((z - frame.known.z) * frame.known.side + x - frame.known.x)];
+  } else {
+    below = {{"refine", "REPLACE"}, {"content", {{"uri", url + "/0/0/0.glb" + frame.query}}}};
+    for (int child = 0; child < kBranches; ++child) {
+      auto [json, child_m] = column_json(frame, lod - 1, 2 * x + child % 2, 2 * z + child / 2);
+      heights_m = child == 0 ? child_m : both(heights_m, child_m);
+      below["children"].push_back(std::move(json));
     }
   }
-  return {{"boundingVolume", box_json(shape, {x0 * edge_m, z0 * edge_m}, columns * edge_m, lod, origin_m)},
-          {"geometricError", 2 * error_of(shape, lod)},
+  const double edge_m = edge_of(frame.shape, lod);
+  Json out{{"boundingVolume", box_json(frame.shape, {x * edge_m, z * edge_m}, edge_m, lod, frame.origin_m, heights_m)},
+           {"geometricError", error_of(frame.shape, lod)}};
+  out.update(below);
+  return {std::move(out), heights_m};
+}
+
+Json local_root(const WorldShape& shape, const TilesetPlace& place, std::span<const glm::dvec2> heights_m) {
+  const glm::dvec2 origin_m = *place.origin_m;
+  const ColumnSquare roots = root_columns(shape, origin_m, place.km);
+  const double edge_m = edge_of(shape, roots.lod);
+  const std::string query = "?origin=" + Json(origin_m.x).dump() + ",0," + Json(origin_m.y).dump();
+  const LocalFrame frame{shape, origin_m, query, tileset_columns(shape, place), heights_m};
+  Json children = Json::array();
+  glm::dvec2 all_m = heights_m.front();
+  for (int i = 0; i < roots.side * roots.side; ++i) {
+    auto [json, child_m] = column_json(frame, roots.lod, roots.x + i % roots.side, roots.z + i / roots.side);
+    all_m = both(all_m, child_m);
+    children.push_back(std::move(json));
+  }
+  return {{"boundingVolume",
+           box_json(shape, {roots.x * edge_m, roots.z * edge_m}, roots.side * edge_m, roots.lod, origin_m, all_m)},
+          {"geometricError", 2 * error_of(shape, roots.lod)},
           {"refine", "REPLACE"},
           {"children", std::move(children)}};
 }
@@ -220,9 +263,22 @@ std::vector<std::byte> encode_subtree(const TileTree& tree, int level) {
   return out;
 }
 
-std::string encode_tileset(const WorldShape& shape, const TilesetPlace& place) {
-  TALUS_CHECK(place.km > 0 && place.km <= kTilesetKmMax);
-  Json root = place.origin_m ? local_root(shape, *place.origin_m, place.km) : world_root(shape);
+ColumnSquare tileset_columns(const WorldShape& shape, const TilesetPlace& place) {
+  TALUS_CHECK(place.origin_m && place.km > 0 && place.km <= kTilesetKmMax);
+  // 16 columns a root: more would end boxes nearer to the ground, and cost as many looks at it.
+  constexpr int kLodsSpelledOut = 2;
+  const ColumnSquare roots = root_columns(shape, *place.origin_m, place.km);
+  const int levels = std::min(roots.lod, kLodsSpelledOut);
+  const std::int32_t branches = 1 << levels;
+  return {roots.lod - levels, roots.x * branches, roots.z * branches, roots.side * branches};
+}
+
+std::string encode_tileset(const WorldShape& shape, const TilesetPlace& place, std::span<const glm::dvec2> heights_m) {
+  if (place.origin_m) {
+    const auto side = static_cast<std::size_t>(tileset_columns(shape, place).side);
+    TALUS_CHECK(heights_m.size() == side * side);
+  }
+  Json root = place.origin_m ? local_root(shape, place, heights_m) : world_root(shape);
   if (place.latitude_longitude_deg) root["transform"] = globe_json(*place.latitude_longitude_deg);
   const double error = 2 * root["geometricError"].get<double>();
   const Json out{{"asset", {{"version", "1.1"}, {"generator", "talus"}}}, {"geometricError", error}, {"root", root}};

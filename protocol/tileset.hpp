@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,19 @@ struct TilesetPlace {
   double km = 8.0;                     ///< with an origin: half the side of the square that is surely covered
   std::optional<glm::dvec2> latitude_longitude_deg;  ///< where the frame's zero touches the WGS 84 ellipsoid
 };
-/// tileset.json. URLs in it are relative to it.
-std::string encode_tileset(const WorldShape& shape, const TilesetPlace& place);
+/// A square of columns of one LOD.
+struct ColumnSquare {
+  int lod = 0;
+  std::int32_t x = 0;  ///< of its lowest corner
+  std::int32_t z = 0;
+  int side = 0;  ///< columns; at most 12
+};
+/// The columns whose heights a local tileset wants to know, so that its boxes end where the ground does: its implicit
+/// trees begin with them. Requires an origin.
+ColumnSquare tileset_columns(const WorldShape& shape, const TilesetPlace& place);
+
+/// tileset.json. URLs in it are relative to it. `heights_m`: below (x) and above (y) which nothing of a column stands
+/// at any LOD, for each of tileset_columns, row by row of z; of the whole world none.
+std::string encode_tileset(const WorldShape& shape, const TilesetPlace& place, std::span<const glm::dvec2> heights_m);
 
 }  // namespace talus::protocol

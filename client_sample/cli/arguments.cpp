@@ -14,7 +14,7 @@ constexpr const char* kFooter = R"(Examples:
   talus info
   talus get 5/0/1/0 -o chunk.glb
   talus get 4/0/0/0 -o hills.height
-  talus get 4/0/2/0 -o hills.obj --local --manifest worlds/alps.toml
+  talus get 4/0/0/0 -o hills.obj --local --manifest worlds/alps.toml
   talus fly --from 0,400,0 --to 2000,400,0 --speed 50 --seconds 60
   talus fly --viewers 50 --seconds 300 --json
   talus fly --until-complete --far 2000 --seconds 60     # time to a complete view

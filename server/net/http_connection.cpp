@@ -15,6 +15,7 @@
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
 #include "server/net/stream_session.hpp"
+#include "server/net/tileset_routes.hpp"
 #include "server/net/websocket_handshake.hpp"
 #include "server/observe/log.hpp"
 #include "server/world/place_query.hpp"
@@ -197,6 +198,9 @@ Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
       return json_answer(ray_json(world.function(), ray.from_m, ray.direction, ray.max_m));
     };
     answer = co_await answer_query(ray->world, std::move(question));
+  } else if (const auto* tileset = std::get_if<TilesetRoute>(&route)) {
+    Question question = [place = tileset->place](const World& world) { return tileset_answer(world, place); };
+    answer = co_await answer_query(tileset->world, std::move(question));
   } else if (const auto* stream = std::get_if<StreamRoute>(&route)) {
     co_return co_await upgrade(stream->world, head, request->method);
   } else {

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "protocol/tileset.hpp"
 #include "server/cache/payload.hpp"
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
@@ -42,6 +43,11 @@ struct RayRoute {
   glm::dvec3 direction{};  ///< of length 1
   double max_m = 0;
 };
+/// Ask the pool where the ground around a place ends, and describe it as 3D Tiles.
+struct TilesetRoute {
+  std::size_t world = 0;
+  protocol::TilesetPlace place;  ///< with an origin
+};
 /// Become a stream of this world.
 struct StreamRoute {
   std::size_t world = 0;
@@ -49,7 +55,8 @@ struct StreamRoute {
 /// Read the metrics; admin door only.
 struct MetricsRoute {};
 
-using Route = std::variant<AnswerRoute, ChunkRoute, SpawnRoute, PointsRoute, RayRoute, StreamRoute, MetricsRoute>;
+using Route =
+    std::variant<AnswerRoute, ChunkRoute, SpawnRoute, PointsRoute, RayRoute, TilesetRoute, StreamRoute, MetricsRoute>;
 
 enum class Door : std::uint8_t { kPublic, kAdmin };
 

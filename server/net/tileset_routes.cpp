@@ -7,6 +7,7 @@
 
 #include "protocol/tileset.hpp"
 #include "server/net/url_text.hpp"
+#include "server/world/column_heights.hpp"
 #include "server/world/place_query.hpp"
 
 namespace talus::server {
@@ -70,24 +71,33 @@ std::optional<AnswerRoute> read_globe(std::string_view query, protocol::TilesetP
 }
 
 /// A described document: cheap to make, so it is revalidated rather than kept.
-AnswerRoute described(const HttpRequest& request, const World& world, std::string_view type, std::string body) {
+HttpAnswer described(const World& world, std::string_view type, std::string body) {
   HttpAnswer answer;
-  if (names_etag(request.field("if-none-match").value_or(""), world.tileset_etag())) {
-    answer.status = 304;
-  } else {
-    answer.content_type = type;
-    answer.text = std::move(body);
-  }
+  answer.content_type = type;
+  answer.text = std::move(body);
   answer.etag = world.tileset_etag();
   answer.cache_control = kNoCache;
-  return {std::move(answer)};
+  return answer;
 }
 
-Route document_route(const HttpRequest& request, const World& world) {
+/// 304 for whoever holds the document already.
+std::optional<AnswerRoute> unchanged(const HttpRequest& request, const World& world) {
+  if (!names_etag(request.field("if-none-match").value_or(""), world.tileset_etag())) return std::nullopt;
+  HttpAnswer answer;
+  answer.status = 304;
+  answer.etag = world.tileset_etag();
+  answer.cache_control = kNoCache;
+  return AnswerRoute{std::move(answer)};
+}
+
+Route document_route(const HttpRequest& request, const RouteContext& context, std::size_t world) {
   protocol::TilesetPlace place;
-  if (auto refused = read_square(request.query, world.function(), place)) return std::move(*refused);
+  const World& of = *context.worlds[world];
+  if (auto refused = read_square(request.query, of.function(), place)) return std::move(*refused);
   if (auto refused = read_globe(request.query, place)) return std::move(*refused);
-  return described(request, world, "application/json", protocol::encode_tileset(world.shape(), place));
+  if (auto answer = unchanged(request, of)) return std::move(*answer);
+  if (!place.origin_m) return AnswerRoute{tileset_answer(of, place)};
+  return TilesetRoute{world, place};
 }
 
 std::optional<AnswerRoute> read_tree(Segments parts, TileTree& out) {
@@ -130,7 +140,7 @@ Route content_route(const HttpRequest& request, const RouteContext& context, std
 
 Route tileset_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
   const World& of = *context.worlds[world];
-  if (parts.size() == 1 && parts[0] == "tileset.json") return document_route(request, of);
+  if (parts.size() == 1 && parts[0] == "tileset.json") return document_route(request, context, world);
   if (parts.size() != 4 && parts.size() != 6) return not_found("unknown_route", kShape);
   const std::string_view last = parts.back();
   const std::string_view suffix = last.ends_with(".subtree") ? ".subtree" : ".glb";
@@ -141,9 +151,16 @@ Route tileset_route(const HttpRequest& request, const RouteContext& context, std
   if (auto refused = read_tile(parts.last(3), suffix, tile)) return std::move(*refused);
   if (suffix == ".glb") return content_route(request, context, world, tree, tile);
   if (!protocol::has_subtree(tree, tile)) return not_found("unknown_subtree", "no subtree of this tree begins there");
+  if (auto answer = unchanged(request, of)) return std::move(*answer);
   const std::vector<std::byte> bytes = protocol::encode_subtree(tree, tile.level);
-  return described(request, of, "application/octet-stream",
-                   {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return AnswerRoute{
+      described(of, "application/octet-stream", {reinterpret_cast<const char*>(bytes.data()), bytes.size()})};
+}
+
+HttpAnswer tileset_answer(const World& world, const protocol::TilesetPlace& place) {
+  std::vector<glm::dvec2> heights_m;
+  if (place.origin_m) heights_m = column_heights(world.function(), protocol::tileset_columns(world.shape(), place));
+  return described(world, "application/json", protocol::encode_tileset(world.shape(), place, heights_m));
 }
 
 }  // namespace talus::server

@@ -11,4 +11,7 @@ namespace talus::server {
 /// level, x and y of a tile, where the last also says .glb or .subtree.
 Route tileset_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts);
 
+/// The answer of a TilesetRoute.
+HttpAnswer tileset_answer(const World& world, const protocol::TilesetPlace& place);
+
 }  // namespace talus::server

@@ -1,5 +1,6 @@
 #include "server/world/terrain_builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -26,12 +27,15 @@ Footprint footprint_of(const PayloadName& name) {
   return {name.world, name.key.lod, name.key.x, name.key.z};
 }
 
-/// Steps along a chunk's edge on the lattice of its strips, and chunks one above the other that 16 bits of them reach.
-int strip_steps(const WorldFunction& world) {
-  return 2 * world.cells() * kStepsPerCell;
+/// The same positions counted in steps of a lattice `scale` times as fine; at most 16 bits of them.
+void refine_positions(int scale, ChunkMesh& mesh) {
+  for (glm::u16vec3& position : mesh.positions) position *= static_cast<std::uint16_t>(scale);
 }
-std::int32_t strips_in_stack(const WorldFunction& world) {
-  return 0xFFFF / strip_steps(world);
+
+/// The lattice of a tile is that of its strips; at LOD 0, where there are none, that of its chunks.
+protocol::MeshLattice tile_lattice(const ChunkKey& key, const WorldFunction& world) {
+  return key.lod > 0 ? protocol::strip_lattice(key, world.cells(), world.voxel_m())
+                     : protocol::mesh_lattice(key, world.cells(), world.voxel_m());
 }
 
 }  // namespace
@@ -112,8 +116,8 @@ ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& w
 }
 
 void TerrainBuilder::sample_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  scratch.chunks.clear();
   scratch.tile.clear();
-  scratch.strips.clear();
   const glm::dvec2 range = world.height_range_m();
   const double edge_m = box_of(name.key, world.cells(), world.voxel_m()).high.y;
   const auto first = static_cast<std::int32_t>(std::floor(range.x / edge_m));
@@ -121,43 +125,54 @@ void TerrainBuilder::sample_tile(const PayloadName& name, const WorldFunction& w
   PayloadName chunk = name;
   chunk.format = PayloadFormat::kDraco;
   for (chunk.key.y = first; chunk.key.y <= last; ++chunk.key.y) {
-    if (sample(chunk, world, scratch) == ChunkKind::kMesh) scratch.tile.push_back({chunk.key, scratch.mesh});
+    if (sample(chunk, world, scratch) == ChunkKind::kMesh) scratch.chunks.push_back({chunk.key, scratch.mesh});
   }
-  if (name.key.lod > 0 && !scratch.tile.empty()) sample_strips(name, world, scratch);
+  if (!scratch.chunks.empty()) stack_tile(name, world, scratch);
 }
 
-/// A finer surface may cross a side one chunk above or below where the column's own does.
-void TerrainBuilder::sample_strips(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
-  PayloadName strip = name;
-  strip.key = scratch.tile.front().key;
-  const std::int32_t last = scratch.tile.back().key.y + 1;
-  for (--strip.key.y; strip.key.y <= last; ++strip.key.y) {
-    if (scratch.strips.empty() || strip.key.y - scratch.strips.back().key.y >= strips_in_stack(world)) {
-      scratch.strips.push_back({strip.key, {}});
+/// Puts the column's chunks into stacks as high as 16 bits of the lattice reach, with the strips on their sides. A
+/// finer surface may cross a side one chunk above or below where the column's own does.
+void TerrainBuilder::stack_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch) {
+  const int steps = tile_lattice(name.key, world).cells * kStepsPerCell;
+  const int scale = steps / (world.cells() * kStepsPerCell);
+  const bool has_strips = name.key.lod > 0;
+  const std::int32_t chunks_max = 0xFFFF / steps;
+  const auto place = [&](const ChunkKey& key, const ChunkMesh& mesh) {
+    if (mesh.indices.empty()) return;
+    if (scratch.tile.empty() || key.y - scratch.tile.back().lowest.y >= chunks_max) {
+      scratch.tile.push_back({key, 0, {}});
     }
-    PlacedMesh& stack = scratch.strips.back();
+    TileStack& stack = scratch.tile.back();
+    const std::int32_t below = key.y - stack.lowest.y;
+    stack.chunks = std::max(stack.chunks, below + 1);
+    append_above(mesh, below * steps, stack.mesh);
+  };
+  auto chunk = scratch.chunks.begin();
+  PayloadName strip = name;
+  strip.key.y = scratch.chunks.front().key.y - (has_strips ? 1 : 0);
+  const std::int32_t last = scratch.chunks.back().key.y + (has_strips ? 1 : 0);
+  for (; strip.key.y <= last; ++strip.key.y) {
+    if (chunk != scratch.chunks.end() && chunk->key.y == strip.key.y) {
+      refine_positions(scale, chunk->mesh);
+      place(chunk->key, chunk->mesh);
+      ++chunk;
+    }
+    if (!has_strips) continue;
     for (const ChunkFace face : {ChunkFace::kPx, ChunkFace::kNx, ChunkFace::kPz, ChunkFace::kNz}) {
       strip.face = face;
       sample_strip(strip, world, scratch);
-      append_above(scratch.mesh, (strip.key.y - stack.key.y) * strip_steps(world), stack.mesh);
+      place(strip.key, scratch.mesh);
     }
   }
 }
 
 TerrainBuilder::Bytes TerrainBuilder::encode_tile(const PayloadName& name, const WorldFunction& world,
                                                   const Scratch& scratch) const {
-  const auto corner_m = [&](const ChunkKey& key) {
-    return box_of(key, world.cells(), world.voxel_m()).low - name.origin;
-  };
   std::vector<protocol::GlbPart> parts;
-  for (const PlacedMesh& placed : scratch.tile) {
-    parts.push_back(
-        {placed.mesh, protocol::mesh_lattice(placed.key, world.cells(), world.voxel_m()), corner_m(placed.key)});
-  }
-  for (const PlacedMesh& stack : scratch.strips) {  // none at LOD 0
-    protocol::MeshLattice lattice = protocol::strip_lattice(stack.key, world.cells(), world.voxel_m());
-    lattice.cells *= strips_in_stack(world);
-    parts.push_back({stack.mesh, lattice, corner_m(stack.key)});
+  for (const TileStack& stack : scratch.tile) {
+    protocol::MeshLattice lattice = tile_lattice(stack.lowest, world);
+    lattice.cells *= stack.chunks;
+    parts.push_back({stack.mesh, lattice, box_of(stack.lowest, world.cells(), world.voxel_m()).low - name.origin});
   }
   return protocol::encode_glb(parts, name.key);
 }

@@ -34,6 +34,13 @@ class TerrainBuilder final : public ChunkBuilder {
     ChunkKey key;
     ChunkMesh mesh;
   };
+  /// Part of a tile: chunks one above the other and the strips on their sides as one mesh, since engines pay by the
+  /// mesh: CesiumJS decodes one a frame where there are two processors.
+  struct TileStack {
+    ChunkKey lowest;
+    std::int32_t chunks = 0;  ///< that it is high
+    ChunkMesh mesh;
+  };
 
   /// Working memory of one pool thread: after its first surface chunk only the payload itself is allocated.
   struct alignas(64) Scratch {
@@ -42,8 +49,8 @@ class TerrainBuilder final : public ChunkBuilder {
     ChunkMesh mesh;
     HeightTile height;
     DensityTile density;
-    std::vector<PlacedMesh> tile;    ///< chunks, one above the other
-    std::vector<PlacedMesh> strips;  ///< by lowest chunk; on the lattice of the next finer LOD
+    std::vector<PlacedMesh> chunks;  ///< of a tile's column, from below
+    std::vector<TileStack> tile;     ///< from below
     MapScratch map;
     std::vector<std::uint8_t> rgb;  ///< of the tile being drawn
   };
@@ -59,7 +66,7 @@ class TerrainBuilder final : public ChunkBuilder {
   ChunkKind sample(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   /// All of a column's chunks and the strips on its sides into `scratch`.
   void sample_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
-  void sample_strips(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
+  void stack_tile(const PayloadName& name, const WorldFunction& world, Scratch& scratch);
   Bytes encode_tile(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
   Bytes encode(const PayloadName& name, const WorldFunction& world, const Scratch& scratch) const;
   CostClass cost_class(const PayloadName& name) const;

@@ -164,6 +164,26 @@ describe('chunks', () => {
     }
   });
 
+  test('refuse faces, tiles, subtrees and places that there are not by name', async () => {
+    const table = [
+      ['seams/1/0/0/0/up.drc', 400, 'bad_face'],
+      ['seams/13/0/0/0/px.drc', 400, 'bad_lod'],
+      ['chunks/0/0/0/0.glb?origin=1e300,0,0', 400, 'bad_origin'],
+      ['3dtiles/tileset.json?origin=0,1e12', 400, 'bad_origin'],
+      ['3dtiles/tileset.json?origin=0,0&km=65', 400, 'bad_km'],
+      ['3dtiles/tileset.json?lat=91&lon=0', 400, 'bad_lat'],
+      ['3dtiles/13/0/0/0/0/0.glb', 400, 'bad_lod'],
+      ['3dtiles/world/5/-1/0.subtree', 400, 'bad_tile'],
+      ['3dtiles/world/5/32/0.subtree', 404, 'unknown_subtree'],
+      ['3dtiles/world/4/0/0.subtree', 404, 'unknown_subtree'],
+      ['3dtiles/6/0/0/7/0/0.glb', 404, 'unknown_tile'],
+    ];
+    for (const [path, status, error] of table) {
+      const answer = await request(http, `/v1/worlds/default/${path}`);
+      assert.deepEqual([answer.status, JSON.parse(answer.body.toString()).error], [status, error], path);
+    }
+  });
+
   test('refuse formats they do not have, and bad queries', async () => {
     const path = await meshPath(server, 'drc');
     for (const format of ['obj', 'DRC', 'drc2', '', 'drc.glb']) {

@@ -1,5 +1,6 @@
 // The fixed doors of a server with the built-in world: ready line, health, worlds, manifest, methods, CORS, metrics.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';
 import { json, request } from './frame/http.mjs';
 import { startServer } from './frame/server.mjs';
@@ -117,6 +118,13 @@ describe('a server with the built-in world', () => {
     const up = await json(http, '/v1/worlds/default/ray?from=100,2000,-50&dir=0,1,0');
     assert.deepEqual([up.status, up.json], [200, null]);
     assert.equal((await json(http, '/v1/worlds/default/ray?from=0,0,0&dir=0,0,0')).status, 400);
+  });
+
+  test('answers every address that the README shows', async () => {
+    const text = readFileSync(new URL('../../../README.md', import.meta.url), 'utf8');
+    const shown = [...text.matchAll(/^curl .*?"?\$base([^" ]*)"? +#/gm)].map((match) => `/v1/worlds/default${match[1]}`);
+    assert.ok(shown.length >= 10, `${shown.length} addresses`);
+    for (const path of shown) assert.equal((await request(http, path)).status, 200, path);
   });
 
   test('answers points with every field, and refuses what is not a list of points', async () => {

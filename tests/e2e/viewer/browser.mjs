@@ -1,4 +1,4 @@
-// The real viewer in a headless Chromium that draws in software, against a real talusd.
+// Pages in a headless Chromium that draws in software; the real viewer among them, against a real talusd.
 import { existsSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
@@ -25,14 +25,13 @@ const flags = [
   '--no-first-run',
 ];
 
-/// Opens a page of the viewer. `faults` collects console errors, page errors and failed or refused requests.
-export async function openViewer(t, base, query) {
-  if (!existsSync(join(builtViewer, 'index.html'))) throw new Error(`${builtViewer} is missing: npm ci && npm run build in client_sample/web`);
+/// Opens a page. `faults` collects console errors, page errors and failed or refused requests.
+export async function openPage(t, url, viewport) {
   if (!existsSync(program)) throw new Error(`${program} is missing: install chromium or set CHROMIUM`);
   const { chromium } = requireFromViewer('playwright-core');
   const browser = await chromium.launch({ executablePath: program, args: flags });
   t.after(() => browser.close());
-  const page = await browser.newPage({ viewport: { width: 960, height: 600 } });
+  const page = await browser.newPage({ viewport });
   const faults = [];
   page.on('console', (message) => {
     if (message.type() === 'error') faults.push(`console: ${message.text()}`);
@@ -42,7 +41,14 @@ export async function openViewer(t, base, query) {
   page.on('response', (response) => {
     if (response.status() >= 400) faults.push(`answer: ${response.url()} ${response.status()}`);
   });
-  await page.goto(`${base}/?${query}`, { timeout: 120_000 });
+  await page.goto(url, { timeout: 120_000 });
+  return { page, faults };
+}
+
+/// Opens a page of the viewer.
+export async function openViewer(t, base, query) {
+  if (!existsSync(join(builtViewer, 'index.html'))) throw new Error(`${builtViewer} is missing: npm ci && npm run build in client_sample/web`);
+  const { page, faults } = await openPage(t, `${base}/?${query}`, { width: 960, height: 600 });
   return { page, faults, state: () => page.evaluate(() => window.talus?.state() ?? null) };
 }
 
@@ -55,7 +61,7 @@ export async function until(viewer, what, wanted, ms) {
     if (last !== null && wanted(last)) return last;
     await new Promise((resolve) => setTimeout(resolve, 250));
   }
-  throw new Error(`not within ${ms} ms: ${what}; the viewer says ${JSON.stringify(last)}; faults: ${viewer.faults.join('; ')}`);
+  throw new Error(`not within ${ms} ms: ${what}; the page says ${JSON.stringify(last)}; faults: ${viewer.faults.join('; ')}`);
 }
 
 export async function screenshot(viewer, name) {

@@ -81,6 +81,9 @@ TEST_F(Routes, ReadTilesOfTheWorldAndOfAColumn) {
   const Route subtree = resolve_target("/v1/worlds/default/3dtiles/6/-3/4/5/31/0.subtree");
   EXPECT_EQ(answer_in(subtree)->status, 200);
   EXPECT_EQ(answer_in(subtree)->text.substr(0, 4), "subt");
+  const Route local = resolve_target("/v1/worlds/default/3dtiles/tileset.json", "origin=1e6,-5&km=4");
+  EXPECT_EQ(std::get<TilesetRoute>(local).place.origin_m, glm::dvec2(1e6, -5)) << "the pool looks at its ground";
+  EXPECT_EQ(std::get<TilesetRoute>(local).place.km, 4.0);
   const std::string& etag = (*worlds_)[0]->tileset_etag();
   const Route known = resolve_target("/v1/worlds/default/3dtiles/tileset.json", "", HttpMethod::kGet, etag);
   EXPECT_EQ(answer_in(known)->status, 304);
@@ -192,7 +195,7 @@ TEST_F(Routes, AnswerWithTheStatusTheDoorsPromise) {
       {"/v1/worlds/default/chunks/0/0/0/0.density", "rev=x", HttpMethod::kGet, 400},
       {"/v1/worlds/default/3dtiles", "", HttpMethod::kGet, 404},
       {"/v1/worlds/default/3dtiles/tileset.json", "", HttpMethod::kGet, 200},
-      {"/v1/worlds/default/3dtiles/tileset.json", "origin=1e6,-5&km=4&lat=47&lon=11", HttpMethod::kHead, 200},
+      {"/v1/worlds/default/3dtiles/tileset.json", "lat=47&lon=11", HttpMethod::kHead, 200},
       {"/v1/worlds/default/3dtiles/tileset.json", "origin=1", HttpMethod::kGet, 400},
       {"/v1/worlds/default/3dtiles/tileset.json", "origin=0,1e12", HttpMethod::kGet, 400},
       {"/v1/worlds/default/3dtiles/tileset.json", "km=4", HttpMethod::kGet, 400},

@@ -48,6 +48,21 @@ TEST(Spec, ShowsTheBytesThatAreSent) {
   EXPECT_TRUE(std::equal(head.begin(), head.end(), bytes.begin()));
 }
 
+TEST(Spec, ShowsAStripMessageThatDecodesToWhatItSaysAndIsSent) {
+  const std::vector<std::byte> bytes = hex_block(spec(), "strip");
+  ASSERT_EQ(bytes.size(), 79U);
+  const auto decoded = decode(bytes);
+  ASSERT_TRUE(decoded) << describe(decoded.error());
+  const auto& strip = std::get<StripHead>(decoded->message);
+  EXPECT_EQ(strip.strip, (StripKey{{2, -3, 4, -5}, ChunkFace::kNy}));
+  EXPECT_EQ(strip.revision, 6U);
+  ASSERT_EQ(decoded->payload.size(), 3U);
+  EXPECT_EQ(decoded->payload[0], std::byte{0xAA});
+  const std::vector<std::byte> head = encode(strip);
+  ASSERT_EQ(head.size() + 3, bytes.size());
+  EXPECT_TRUE(std::equal(head.begin(), head.end(), bytes.begin()));
+}
+
 TEST(Spec, ShowsTilesThatDecodeToWhatItSaysAndEncodeToWhatItShows) {
   const std::vector<std::byte> height_bytes = hex_block(spec(), "height");
   const auto height = decode_height(height_bytes);

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/mesh/build_chunk.hpp"
 #include "tests/support/random.hpp"
 
 namespace talus::protocol {
@@ -90,94 +90,99 @@ TEST(Tileset, GivesEveryColumnOfATreeToOneTile) {
   EXPECT_FALSE(column_of(tree, {-1, 0, 0}));
 }
 
+/// The root of a local tileset whose ground is `heights_m` everywhere.
+Json flat_root(const TilesetPlace& place, const glm::dvec2& heights_m = {-20, 300}) {
+  const auto side = static_cast<std::size_t>(tileset_columns(kShape, place).side);
+  return Json::parse(encode_tileset(kShape, place, std::vector(side * side, heights_m)))["root"];
+}
+
+/// Calls `visit(parent, tile)` for every tile below `tile`.
+template <typename Visit>
+void for_each_child(const Json& tile, const Visit& visit) {
+  if (!tile.contains("children")) return;
+  for (const Json& child : tile["children"]) {
+    visit(tile, child);
+    for_each_child(child, visit);
+  }
+}
+
+bool holds(const Box& outer, const Box& inner) {
+  constexpr double kRounding = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (inner.low[axis] < outer.low[axis] - kRounding || inner.high[axis] > outer.high[axis] + kRounding) return false;
+  }
+  return true;
+}
+
 TEST(Tileset, HalvesErrorsThatFollowTheCells) {
-  const Json world = Json::parse(encode_tileset(kShape, {}));
+  const Json world = Json::parse(encode_tileset(kShape, {}, {}));
   EXPECT_EQ(world["asset"]["version"], "1.1");
   EXPECT_EQ(world["root"]["implicitTiling"]["availableLevels"], kWorldTreeLevels);
   EXPECT_EQ(world["root"]["geometricError"], std::ldexp(1.0, kWorldTreeLevels - 1)) << "1 m at LOD 0";
   EXPECT_GE(world["geometricError"], world["root"]["geometricError"]);
-  const Json local = Json::parse(encode_tileset(kShape, {glm::dvec2{0, 0}, 4.0, std::nullopt}));
-  for (const Json& child : local["root"]["children"]) {
-    EXPECT_EQ(child["geometricError"], std::ldexp(1.0, child["implicitTiling"]["availableLevels"].get<int>() - 1));
-    EXPECT_GE(local["root"]["geometricError"], 2 * child["geometricError"].get<double>());
+  for (const double km : {0.01, 0.05, 4.0, 64.0}) {
+    const Json root = flat_root({glm::dvec2{-70, 1e6}, km, std::nullopt});
+    int trees = 0;
+    for_each_child(root, [&](const Json& parent, const Json& child) {
+      EXPECT_EQ(parent["geometricError"], 2 * child["geometricError"].get<double>());
+      if (!child.contains("implicitTiling")) return;
+      ++trees;
+      EXPECT_EQ(child["geometricError"], std::ldexp(1.0, child["implicitTiling"]["availableLevels"].get<int>() - 1));
+    });
+    const int side = tileset_columns(kShape, {glm::dvec2{-70, 1e6}, km, std::nullopt}).side;
+    EXPECT_EQ(trees, side * side) << "one for each column whose heights are asked for";
   }
 }
 
 TEST(Tileset, CoversTheSquareThatIsAskedForWhereverItIs) {
   testing::Random random(91);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 50; ++round) {
     const glm::dvec2 origin{random.real(-1e9, 1e9), random.real(-1e9, 1e9)};
     const double km = random.real(0.01, kTilesetKmMax);
-    const Json root = Json::parse(encode_tileset(kShape, {origin, km, std::nullopt}))["root"];
+    const Json root = flat_root({origin, km, std::nullopt});
     ASSERT_LE(root["children"].size(), 9U);
     double area = 0;
     Box whole{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-    const Box outer = box_of_tile(root, {});
-    for (const Json& child : root["children"]) {
+    for_each_child(root, [&](const Json& parent, const Json& child) {
       const Box box = box_of_tile(child, {});
+      EXPECT_TRUE(holds(box_of_tile(parent, {}), box));
+      if (!child.contains("implicitTiling")) return;
       area += (box.high.x - box.low.x) * (box.high.y - box.low.y);
       whole.low = glm::min(whole.low, box.low);
       whole.high = glm::max(whole.high, box.high);
-      EXPECT_TRUE(box.low.x >= outer.low.x && box.low.y >= outer.low.y && box.high.x <= outer.high.x);
-    }
+    });
     EXPECT_NEAR(area, (whole.high.x - whole.low.x) * (whole.high.y - whole.low.y), area * 1e-9) << "no gap, no overlap";
     const double half = km * 1000;
     EXPECT_TRUE(whole.low.x <= -half && whole.low.y <= -half && whole.high.x >= half && whole.high.y >= half);
   }
 }
 
-TEST(Tileset, HasBoxesThatHoldTheirMeshes) {
-  const WorldFunction world{Manifest()};
-  const WorldShape shape{world.cells(), world.voxel_m(), world.height_range_m()};
-  testing::Random random(92);
-  ChunkScratch scratch;
-  ChunkMesh mesh;
-  int meshes = 0;
-  for (int round = 0; round < 12; ++round) {
-    const glm::dvec2 origin{random.real(-1e6, 1e6), random.real(-1e6, 1e6)};
-    const Json root = Json::parse(encode_tileset(shape, {origin, 2.0, std::nullopt}))["root"];
-    const Json& child = root["children"][random.bits() % root["children"].size()];
-    const int levels = child["implicitTiling"]["availableLevels"];
-    const std::string url = child["content"]["uri"];
-    int lod = 0;
-    std::int32_t x = 0;
-    std::int32_t z = 0;
-    ASSERT_EQ(std::sscanf(url.c_str(), "%d/%d/%d/", &lod, &x, &z), 3) << url;
-    ASSERT_EQ(lod + 1, levels);
-    const TileId tile{static_cast<int>(random.whole(0, lod)), 0, 0};
-    const std::int64_t side = std::int64_t{1} << tile.level;
-    const TileId placed{tile.level, static_cast<std::uint32_t>(random.whole(0, side - 1)),
-                        static_cast<std::uint32_t>(random.whole(0, side - 1))};
-    const Box box = box_of_tile(child, placed);
-    ChunkKey key = *column_of(column_tree(lod, x, z), placed);
-    const double step_m = std::ldexp(world.voxel_m(), key.lod) / kStepsPerCell;
-    const double edge_m = std::ldexp(world.cells() * world.voxel_m(), key.lod);
-    for (key.y = static_cast<std::int32_t>(std::floor(shape.height_range_m.x / edge_m));
-         key.y <= static_cast<std::int32_t>(std::floor(shape.height_range_m.y / edge_m)); ++key.y) {
-      if (build_chunk(world, key, scratch, mesh) != ChunkKind::kMesh) continue;
-      ++meshes;
-      const glm::dvec3 corner = box_of(key, world.cells(), world.voxel_m()).low;
-      for (const auto& p : mesh.positions) {
-        const glm::dvec3 at = corner + glm::dvec3(p) * step_m;
-        const glm::dvec3 in_tile{at.x - origin.x, -(at.z - origin.y), at.y};
-        for (int axis = 0; axis < 3; ++axis) {
-          ASSERT_GE(in_tile[axis], box.low[axis] - 1e-6);
-          ASSERT_LE(in_tile[axis], box.high[axis] + 1e-6);
-        }
-      }
-    }
-  }
-  EXPECT_GE(meshes, 12);
+TEST(Tileset, EndsItsBoxesWhereTheGroundDoes) {
+  const TilesetPlace place{glm::dvec2{0, 0}, 4.0, std::nullopt};
+  const ColumnSquare columns = tileset_columns(kShape, place);
+  std::vector<glm::dvec2> heights(static_cast<std::size_t>(columns.side * columns.side), {10, 20});
+  heights[1] = {-30, 400};  // the second column along x
+  const Json root = Json::parse(encode_tileset(kShape, place, heights))["root"];
+  int high = 0;
+  for_each_child(root, [&](const Json& /*parent*/, const Json& child) {
+    if (!child.contains("implicitTiling")) return;
+    const Box box = box_of_tile(child, {});
+    EXPECT_NEAR(box.high.z, box.high.z > 100 ? 400 : 20, 5);
+    EXPECT_NEAR(box.low.z, box.high.z > 100 ? -30 : 10, 5);
+    if (box.high.z > 100) ++high;
+  });
+  EXPECT_EQ(high, 1);
+  EXPECT_GT(box_of_tile(root, {}).high.z, 400) << "parents hold their children";
 }
 
 TEST(Tileset, StandsUprightOnTheGlobe) {
-  const auto m = Json::parse(encode_tileset(kShape, {glm::dvec2{0, 0}, 4.0, glm::dvec2{0, 90}}))["root"]["transform"]
-                     .get<std::vector<double>>();
+  const auto m = flat_root({glm::dvec2{0, 0}, 4.0, glm::dvec2{0, 90}})["transform"].get<std::vector<double>>();
   ASSERT_EQ(m.size(), 16U);
   // At 0 N, 90 E: east is -x, north is z, up is y.
   const std::vector<double> expected{-1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 6378137, 0, 1};
   for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(m[i], expected[i], 1e-6) << i;
-  const auto pole = Json::parse(encode_tileset(kShape, {std::nullopt, 4.0, glm::dvec2{90, 0}}))["root"]["transform"];
+  const auto pole =
+      Json::parse(encode_tileset(kShape, {std::nullopt, 4.0, glm::dvec2{90, 0}}, {}))["root"]["transform"];
   EXPECT_NEAR(pole[14].get<double>(), 6356752.314245, 1e-5) << "the polar radius of WGS 84";
 }
 

@@ -8,6 +8,7 @@ import { Key } from '../../src/protocol/generated/talus/wire/key';
 import { Message } from '../../src/protocol/generated/talus/wire/message';
 import { View } from '../../src/protocol/generated/talus/wire/view';
 import { ChunkKind, MessageError, decode, encodeHeld, encodeHello, encodePing, encodeView } from '../../src/protocol/message';
+import { specBytes } from './spec';
 
 function open(bytes: Uint8Array): Envelope {
   const headBytes = new DataView(bytes.buffer).getUint32(0, true);
@@ -86,6 +87,13 @@ describe('what the server says', () => {
     for (let length = 0; length < whole.length; ++length) {
       expect(() => decode(whole.slice(0, length)), `prefix of ${length}`).toThrow(MessageError);
     }
+  });
+
+  test('a chunk and a strip are what the specification shows', () => {
+    const key = { lod: 2, x: -3, y: 4, z: -5 };
+    const shown = new Uint8Array([0xaa, 0xbb, 0xcc]);
+    expect(decode(specBytes('chunk'))).toEqual({ type: 'chunk', key, revision: 6n, kind: ChunkKind.Mesh, faces: 0, payload: shown });
+    expect(decode(specBytes('strip'))).toEqual({ type: 'strip', strip: { key, face: 3 }, revision: 6n, payload: shown });
   });
 
   test('a ping is read back', () => expect(decode(encodePing(77n))).toEqual({ type: 'ping', nonce: 77n }));

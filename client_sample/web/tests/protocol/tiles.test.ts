@@ -1,16 +1,10 @@
 import { readFileSync, readdirSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { decodeDensity, decodeHeight, kNoMaterial } from '../../src/protocol/tiles';
+import { specBytes } from './spec';
 
 const root = new URL('../../../../', import.meta.url);
 const corpus = new URL('tests/fuzz/corpus/tiles/', root);
-
-/// The bytes of the block of SPEC.md that begins with ```hex NAME.
-function specBytes(name: string): Uint8Array {
-  const text = readFileSync(new URL('protocol/SPEC.md', root), 'utf8');
-  const words = new RegExp(`\`\`\`hex ${name}\\n([^\`]*)\`\`\``).exec(text)?.[1]?.trim().split(/\s+/) ?? [];
-  return Uint8Array.from(words, (word) => parseInt(word, 16));
-}
 
 function stored(ending: string): Uint8Array[] {
   return readdirSync(corpus)
