@@ -38,7 +38,7 @@ class Painter {
       case MapLayer::kMaterial:
         return light_of(info_of(material(b, i, k, at)).colour_rgb);
       case MapLayer::kLayer: {
-        const LayerPlace place = world_.layer(b.stack_m[at], b.choice[at], height, column_voxel(b, i, k));
+        const LayerPlace place = world_.layer(rock_place(b, i, k, at));
         return category_light(static_cast<std::uint64_t>(place.set) * kLayers +
                               static_cast<std::uint64_t>(place.index));
       }
@@ -52,6 +52,8 @@ class Painter {
         return plate(b, i, k, at);
       case MapLayer::kFaults:
         return fault(b, i, k, at);
+      case MapLayer::kDistricts:
+        return district(b, at);
     }
     return {};
   }
@@ -59,6 +61,10 @@ class Painter {
  private:
   static glm::i64vec2 column_voxel(const ColumnBlock& b, int i, int k) {
     return {b.grid.x_voxel + i * b.grid.step_voxel, b.grid.z_voxel + k * b.grid.step_voxel};
+  }
+
+  static RockPlace rock_place(const ColumnBlock& b, int i, int k, std::size_t at) {
+    return {b.stack_m[at], b.choice[at], b.height_m[at], column_voxel(b, i, k), b.grid.step_voxel};
   }
 
   PlatePlace plate_at(const ColumnBlock& b, int i, int k) const {
@@ -84,11 +90,21 @@ class Painter {
     return ground + (fault_light(place.fault) - ground) * (near * near);
   }
 
+  /// Every district as far as it has the ground; heights show through.
+  glm::vec3 district(const ColumnBlock& b, std::size_t at) const {
+    const float high = std::clamp(b.height_m[at] / 1200.0f, 0.0f, 1.0f);
+    glm::vec3 out = light_of(b.height_m[at] < 0 ? 0x22303E : 0x5A5C58) * (1.0f + 0.8f * high);
+    const DistrictShares shares = b.districts_at(at);
+    for (std::size_t n = 0; n < kDistricts; ++n)
+      out += (district_light(static_cast<District>(n)) - out) * std::clamp(shares[n], 0.0f, 1.0f);
+    return out;
+  }
+
   Material material(const ColumnBlock& b, int i, int k, std::size_t at) const {
     const glm::i64vec2 voxel = column_voxel(b, i, k);
-    const Material cover = world_.cover(
-        {b.height_m[at], b.steepness[at], b.ridge[at], b.hilliness[at], b.beach[at], voxel, b.districts_at(at)});
-    return cover == Material::kRock ? world_.rock(b.stack_m[at], b.choice[at], b.height_m[at], voxel) : cover;
+    const Material cover = world_.cover({b.height_m[at], b.steepness[at], b.ridge[at], b.hilliness[at], b.beach[at],
+                                         voxel, b.districts_at(at), b.grid.step_voxel});
+    return cover == Material::kRock ? world_.rock(rock_place(b, i, k, at)) : cover;
   }
 
   const WorldFunction& world_;

@@ -28,12 +28,13 @@ enum class MapLayer : std::uint8_t {
   kRidge,
   kHilliness,
   kPlates,
-  kFaults
+  kFaults,
+  kDistricts
 };
 
 /// The word of every layer, by its number.
-inline constexpr std::array<std::string_view, 9> kMapLayerNames{"shaded", "height",    "slope",  "materials", "layers",
-                                                                "ridge",  "hilliness", "plates", "faults"};
+inline constexpr std::array<std::string_view, 10> kMapLayerNames{
+    "shaded", "height", "slope", "materials", "layers", "ridge", "hilliness", "plates", "faults", "districts"};
 
 struct MapStyle {
   MapLayer layer = MapLayer::kShaded;

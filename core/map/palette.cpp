@@ -75,6 +75,13 @@ glm::vec3 fault_light(FaultClass fault) {
   return kColours[static_cast<std::size_t>(fault)];
 }
 
+glm::vec3 district_light(District district) {
+  // Badlands red, dunes yellow, table land orange, karst green, ice blue.
+  static constexpr std::array<glm::vec3, kDistricts> kColours{
+      light_of(0xB8483C), light_of(0xF0D878), light_of(0xE08A3C), light_of(0x58A858), light_of(0x8CC8F0)};
+  return kColours[static_cast<std::size_t>(district)];
+}
+
 glm::vec3 category_light(std::uint64_t number) {
   const std::uint64_t bits = mix64(0x7A1, number);
   const auto channel = [&](int shift) {

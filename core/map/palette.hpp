@@ -37,6 +37,7 @@ glm::vec3 heat_light(float share);  ///< dark to bright, 0..1
 /// A plate's colour by its kind, shaded by any number of its own so that neighbours differ.
 glm::vec3 plate_light(PlateKind kind, std::uint64_t number);
 glm::vec3 fault_light(FaultClass fault);
+glm::vec3 district_light(District district);
 /// Any number has one of many colours that are told apart easily.
 glm::vec3 category_light(std::uint64_t number);
 

@@ -79,8 +79,9 @@ class Column {
   glm::vec3 rock(double y_m, float depth_m) const {
     const ColumnBlock& b = brick_.columns();
     const auto height = static_cast<float>(y_m);
-    const LayerPlace layer = world_.layer(b.stack_m[0], b.choice[0], height, corner_);
-    const glm::vec3 material = light_of(info_of(world_.rock(b.stack_m[0], b.choice[0], height, corner_)).colour_rgb);
+    const RockPlace place{b.stack_m[0], b.choice[0], height, corner_, step_};
+    const LayerPlace layer = world_.layer(place);
+    const glm::vec3 material = light_of(info_of(world_.rock(place)).colour_rgb);
     // Neighbouring layers of one rock differ a little, so that bedding shows.
     const float shade = 0.82f + 0.36f * category_light(static_cast<std::uint64_t>(layer.index)).x;
     return mix(material * shade, kDeepRock, depth_m / 2500.0f);

@@ -66,9 +66,10 @@ ChunkKind sample_density_tile(const WorldFunction& world, const ChunkKey& key, C
         const std::size_t column = static_cast<std::size_t>(z + 1) * columns.stride + static_cast<std::size_t>(x + 1);
         const glm::i64vec2 voxel{columns.grid.x_voxel + (x + 1) * step_voxel,
                                  columns.grid.z_voxel + (z + 1) * step_voxel};
-        const Material material = touches_air(field, x, y, z)
-                                      ? surface_material(world, columns, x, z, up_at(field, x, y, z), y_m)
-                                      : world.rock(columns.stack_m[column], columns.choice[column], y_m, voxel);
+        const Material material =
+            touches_air(field, x, y, z)
+                ? surface_material(world, columns, x, z, up_at(field, x, y, z), y_m)
+                : world.rock({columns.stack_m[column], columns.choice[column], y_m, voxel, step_voxel});
         out.materials[to] = static_cast<std::uint8_t>(material);
       }
     }

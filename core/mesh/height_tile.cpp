@@ -25,11 +25,12 @@ Material material_at(const WorldFunction& world, const ColumnBlock& columns, int
   const std::size_t at = static_cast<std::size_t>(k + 1) * columns.stride + static_cast<std::size_t>(i + 1);
   const glm::i64vec2 voxel{columns.grid.x_voxel + (i + 1) * columns.grid.step_voxel,
                            columns.grid.z_voxel + (k + 1) * columns.grid.step_voxel};
-  const Material cover = is_roofed ? world.sheltered(height_m, up)
-                                   : world.cover({height_m, up, columns.ridge[at], columns.hilliness[at],
-                                                  columns.beach[at], voxel, columns.districts_at(at)});
+  const Material cover = is_roofed
+                             ? world.sheltered(height_m, up)
+                             : world.cover({height_m, up, columns.ridge[at], columns.hilliness[at], columns.beach[at],
+                                            voxel, columns.districts_at(at), columns.grid.step_voxel});
   if (cover != Material::kRock) return cover;
-  return world.rock(columns.stack_m[at], columns.choice[at], height_m, voxel);
+  return world.rock({columns.stack_m[at], columns.choice[at], height_m, voxel, columns.grid.step_voxel});
 }
 
 }  // namespace

@@ -79,12 +79,12 @@ MeshVertex VertexMaker::operator()(const CrossedEdge& e) const {
       over_m - height_m > kUnderRoof_m
           ? world_.sheltered(height_m, normal.y)
           : world_.cover({height_m, normal.y, ridge, columns_.hilliness[from_column], columns_.beach[from_column],
-                          column_voxel, columns_.districts_at(from_column)});
+                          column_voxel, columns_.districts_at(from_column), columns_.grid.step_voxel});
 
   if (material == Material::kRock) {
     const float stack_m =
         columns_.stack_m[from_column] + (columns_.stack_m[to_column] - columns_.stack_m[from_column]) * t;
-    material = world_.rock(stack_m, columns_.choice[from_column], height_m, column_voxel);
+    material = world_.rock({stack_m, columns_.choice[from_column], height_m, column_voxel, columns_.grid.step_voxel});
   }
   return {position, normal, static_cast<std::uint8_t>(material), ridge_byte(ridge)};
 }

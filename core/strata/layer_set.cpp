@@ -11,24 +11,6 @@ namespace {
 constexpr int kSlices = 4096;
 constexpr float kSlicesPerMetre = static_cast<float>(kSlices) / kStackDepth;
 
-/// A group of layers of one character.
-struct Formation {
-  Material hard, soft;  ///< beds and the partings between them
-  float bed_low_m, bed_high_m;
-  float parting_low_m, parting_high_m;
-  float whole_low_m, whole_high_m;  ///< thickness of the formation
-  float mixed;                      ///< share of the other rock inside a layer
-};
-
-constexpr std::array<Formation, 6> kFormations{{
-    {Material::kLimestone, Material::kShale, 5.0f, 16.0f, 0.4f, 1.4f, 45.0f, 120.0f, 0.06f},
-    {Material::kRedSandstone, Material::kMudstone, 2.0f, 9.0f, 0.8f, 3.0f, 40.0f, 110.0f, 0.15f},
-    {Material::kMudstone, Material::kShale, 3.0f, 9.0f, 2.0f, 6.0f, 35.0f, 95.0f, 0.20f},
-    {Material::kSandstone, Material::kMarl, 4.0f, 14.0f, 0.6f, 2.5f, 40.0f, 120.0f, 0.12f},
-    {Material::kLimestone, Material::kMarl, 0.8f, 2.6f, 0.6f, 2.2f, 25.0f, 70.0f, 0.10f},
-    {Material::kBasalt, Material::kGranite, 10.0f, 30.0f, 6.0f, 14.0f, 50.0f, 140.0f, 0.10f},
-}};
-
 /// Uniform numbers from a seed, one after the other.
 class Draw {
  public:
@@ -42,8 +24,53 @@ class Draw {
   std::uint64_t next_ = 0;
 };
 
-Layer layer_of(Material main, Material other, float mixed) {
-  return {hardness_of(main) * (1 - mixed) + hardness_of(other) * mixed, {main, other}, {1 - mixed, 1.0f}};
+/// How much more often a set has the formations that it likes best than those that it likes least.
+constexpr float kPreference = 12.0f;
+
+/// Which formation comes next: each by the set's weight for it, and none twice in a row.
+class FormationDraw {
+ public:
+  explicit FormationDraw(Draw& draw) : draw_(draw) {
+    for (std::size_t n = 0; n < formations().size(); ++n) {
+      const float liking = draw.between(0, 1);
+      sum_ += 1.0f + (kPreference - 1.0f) * liking * liking * liking;
+      cumulative_.push_back(sum_);
+    }
+  }
+
+  const Formation& next() {
+    std::size_t pick = last_;
+    while (pick == last_) {
+      const auto at = std::ranges::upper_bound(cumulative_, draw_.between(0, sum_));
+      pick = std::min(static_cast<std::size_t>(at - cumulative_.begin()), cumulative_.size() - 1);
+    }
+    last_ = pick;
+    return formations()[pick];
+  }
+
+ private:
+  Draw& draw_;
+  std::vector<float> cumulative_;
+  float sum_ = 0;
+  std::size_t last_ = formations().size();
+};
+
+/// A layer of a mixture whose shares chance has shifted by up to half, so that no two layers are alike.
+Layer layer_of(const Mixture& mixture, Draw& draw) {
+  Layer out;
+  float sum = 0;
+  for (std::size_t n = 0; n < kRocksPerLayer; ++n) {
+    sum += mixture[n].share * draw.between(0.5f, 1.5f);
+    out.rocks[n] = mixture[n].rock;
+    out.cumulative[n] = sum;
+  }
+  float below = 0;
+  for (std::size_t n = 0; n < kRocksPerLayer; ++n) {
+    out.cumulative[n] = n + 1 < kRocksPerLayer ? out.cumulative[n] / sum : 1.0f;
+    out.hardness += hardness_of(out.rocks[n]) * (out.cumulative[n] - below);
+    below = out.cumulative[n];
+  }
+  return out;
 }
 
 }  // namespace
@@ -51,16 +78,13 @@ Layer layer_of(Material main, Material other, float mixed) {
 LayerSet::LayerSet(std::uint64_t seed) : start_(kSlices) {
   Draw draw(seed);
   std::vector<double> thickness;
-  std::size_t last = kFormations.size();
+  FormationDraw formation(draw);
   while (layers_.size() < kLayers) {
-    auto pick = static_cast<std::size_t>(draw.between(0, static_cast<float>(kFormations.size())));
-    if (pick == last) pick = (pick + 1) % kFormations.size();
-    last = pick;
-    const Formation& f = kFormations[pick];
+    const Formation& f = formation.next();
     float left = draw.between(f.whole_low_m, f.whole_high_m);
     for (bool bed = true; left > 0 && layers_.size() < kLayers; bed = !bed) {
       const float t = bed ? draw.between(f.bed_low_m, f.bed_high_m) : draw.between(f.parting_low_m, f.parting_high_m);
-      layers_.push_back(bed ? layer_of(f.hard, f.soft, f.mixed) : layer_of(f.soft, f.hard, f.mixed));
+      layers_.push_back(layer_of(bed ? f.beds : f.partings, draw));
       thickness.push_back(static_cast<double>(t));
       left -= t;
     }

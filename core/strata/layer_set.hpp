@@ -3,7 +3,8 @@
 // Problem: thousands of layers, each with its own thickness and rocks, cannot be stored in space. Answer: only their
 // thicknesses are, once; the depth of a point below the stack's top, bent by deformation, finds its layer. Based on: a
 // description of virtual rock layers in a planet's erosion (layer sets, prefix sums, material distributions). What
-// differs: layers come in formations of one character, so that cliffs show bands and not the stripes of a jumper.
+// differs: layers come in formations of one character, so that cliffs show bands and not the stripes of a jumper, and
+// every set prefers some formations: a country of limestone, one of lava.
 #pragma once
 
 #include <array>
@@ -11,13 +12,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/strata/material.hpp"
+#include "core/strata/formation.hpp"
 
 namespace talus {
 
 inline constexpr int kLayers = 2048;
-/// Different rocks that one layer can hold in different places.
-inline constexpr std::size_t kRocksPerLayer = 2;
 /// Every stack is this deep, in metres: from above the highest summit to below the deepest sea floor.
 inline constexpr float kStackDepth = 5120.0f;
 

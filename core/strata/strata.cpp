@@ -113,20 +113,21 @@ constexpr float kNeutralHardness = 0.53f;
 constexpr float kLeak_m = 80.0f;
 constexpr float kWindow_m = 45.0f;
 
-/// Edge of the patches in which a layer keeps one of its rocks, in metres.
-constexpr double kPatch_m = 140.0;
-
-float unit(std::uint64_t bits) {
-  return static_cast<float>(bits >> 40) * 0x1p-24f;
-}
+/// Wavelength of the ragged border between two sets, in metres.
+constexpr double kBorder_m = 160.0;
+/// Metres to the side by which the border of two rocks moves per metre of depth inside a layer: it never stands
+/// upright.
+constexpr double kSlant = 5.0;
 
 }  // namespace
 
-Strata::Strata(const StrataControls& controls) : controls_(controls) {
+Strata::Strata(const StrataControls& controls)
+    : controls_(controls), facies_(controls.facies_m, controls.wrap_m), borders_(kBorder_m, controls.wrap_m) {
   TALUS_CHECK(controls.sets >= 2 && controls.ledge <= 1.8f);
   for (int n = 0; n < controls.sets; ++n) {
     sets_.emplace_back(mix64(controls.seed, static_cast<std::uint64_t>(n)));
     tabulate(sets_.back());
+    dominant_.add(sets_.back());
   }
   // A choice of exactly sets - 1 looks one set further with weight 0: let it read something.
   ledge_.resize(ledge_.size() + static_cast<std::size_t>(kSlicesPerSet) + 1);
@@ -170,28 +171,31 @@ void Strata::ledge_row(const StrataRow& row, const float* relief_x, const float*
    slope_x, slope_z);
 }
 
-std::uint64_t Strata::patch_at(float stack_m, glm::dvec2 place_m) const {
-  // Patches have crooked borders because the deformation shifts their lattice.
-  const double shift = static_cast<double>(stack_m) * 2.0;
-  const auto cell = [&](double at) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at / kPatch_m)));
-  };
-  return mix64(mix64(controls_.seed, cell(place_m.x + shift)), cell(place_m.y - shift));
-}
-
-LayerPlace Strata::layer_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
-  const std::uint64_t patch = patch_at(stack_m, place_m);
+int Strata::set_at(const RockPoint& p) const {
   const int last = sets() - 1;
-  const int low = std::clamp(static_cast<int>(choice), 0, last);
-  const float fraction = choice - static_cast<float>(low);
-  const int chosen = 0.35f + 0.3f * unit(mix64(patch, 1)) < fraction ? std::min(low + 1, last) : low;
-  return {chosen, set(chosen).index_at(stack_m - height_m)};
+  const int low = std::clamp(static_cast<int>(p.choice), 0, last);
+  const float fraction = p.choice - static_cast<float>(low);
+  // Beyond these nothing is left to chance; a wide cell takes the larger part.
+  float border = 0.5f;
+  if (fraction > 0.35f && fraction < 0.65f && p.span_m < kBorder_m)
+    border = 0.35f + 0.3f * borders_.quantile(controls_.seed, p.place_m);
+  return fraction > border ? std::min(low + 1, last) : low;
 }
 
-Material Strata::rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const {
-  const LayerPlace place = layer_at(stack_m, choice, height_m, place_m);
-  const std::uint64_t patch = patch_at(stack_m, place_m);
-  return set(place.set).rock_at(place.index, unit(mix64(patch, static_cast<std::uint64_t>(place.index) + 2)));
+LayerPlace Strata::layer_at(const RockPoint& point) const {
+  const int chosen = set_at(point);
+  return {chosen, set(chosen).index_at(point.stack_m - point.height_m)};
+}
+
+Material Strata::rock_at(const RockPoint& point) const {
+  const float depth_m = point.stack_m - point.height_m;
+  if (point.span_m >= DominantRock::kSpanLow_m) return dominant_.at(set_at(point), depth_m, point.span_m);
+  const LayerPlace place = layer_at(point);
+  const LayerSet& rocks = set(place.set);
+  const double inside_m = kSlant * static_cast<double>(depth_m - rocks.top_m(place.index));
+  const auto name = static_cast<std::uint64_t>(place.set) * kLayers + static_cast<std::uint64_t>(place.index) + 1;
+  const glm::dvec2 moved(point.place_m.x + inside_m, point.place_m.y - inside_m);
+  return rocks.rock_at(place.index, facies_.quantile(mix64(controls_.seed, name), moved));
 }
 
 }  // namespace talus

@@ -3,7 +3,8 @@
 //
 // Everything is a function of a column's `stack` (height of the stack's top there: the deformation), its `choice`
 // (which layer set rules, with a fraction over which two sets blend) and a height. Lookups go through tables of even
-// slices, so that a vector of points needs gathers and no search; only the visible rock of a vertex searches its layer.
+// slices, so that a vector of points needs gathers and no search; only the visible rock of a vertex searches its layer,
+// and finds the rock that the layer has there by a noise of the layer's own.
 #pragma once
 
 #include <array>
@@ -14,6 +15,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/strata/dominant_rock.hpp"
+#include "core/strata/facies.hpp"
 #include "core/strata/layer_set.hpp"
 
 namespace talus {
@@ -22,6 +25,8 @@ struct StrataControls {
   int sets = 12;
   float ledge = 1.6f;         ///< metres of ledge per metre of the tables' ledge; up to 1.8 heights stay in order
   float ledge_slope = 0.25f;  ///< slope of the relief from which ledges show
+  double facies_m = 600;      ///< wavelength at which a layer's rock changes
+  double wrap_m = 0;          ///< east-west period of the world, 0 for none
   std::uint64_t seed = 0;
 };
 
@@ -37,6 +42,15 @@ struct StrataRow {
 struct LayerPlace {
   int set = 0;
   int index = 0;
+};
+
+/// A point among the layers, and how much of the world around it is to be spoken for.
+struct RockPoint {
+  float stack_m;  ///< of its column
+  float choice;   ///< the same
+  float height_m;
+  glm::dvec2 place_m;  ///< x and z from the origin; x reduced to one period where the world wraps
+  double span_m = 0;   ///< edge of the cell that asks: from DominantRock::kSpanLow_m on what most of it is made of
 };
 
 class Strata {
@@ -55,19 +69,22 @@ class Strata {
   void ledge_row(const StrataRow& row, const float* relief_x, const float* relief_z, float* height_m, float* slope_x,
                  float* slope_z) const;
 
-  /// The layer at height `height_m` of a column.
-  LayerPlace layer_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const;
-  /// Its rock there.
-  Material rock_at(float stack_m, float choice, float height_m, glm::dvec2 place_m) const;
+  /// The layer at a point; in the zone where two sets meet one or the other, in patches.
+  LayerPlace layer_at(const RockPoint& point) const;
+  /// The rock there: where many places share a layer each of its rocks takes its probability of them.
+  Material rock_at(const RockPoint& point) const;
 
  private:
-  std::uint64_t patch_at(float stack_m, glm::dvec2 place_m) const;
+  int set_at(const RockPoint& point) const;
   void tabulate(const LayerSet& set);
 
   StrataControls controls_;
+  Facies facies_;
+  Facies borders_;  ///< of layer sets
   std::vector<LayerSet> sets_;
   std::vector<float> ledge_;     ///< kSlicesPerSet values per set: leaky integral of hardness over depth
   std::vector<float> hardness_;  ///< the same: mean hardness around a depth
+  DominantRock dominant_;
 };
 
 }  // namespace talus

@@ -37,6 +37,17 @@ float patches(std::uint64_t seed, glm::i64vec2 column_voxel, double voxel_m) {
   return near + (far - near) * w;
 }
 
+/// What is left of chance where a cell is wider than the patches it would make: dots on a far slope.
+float chance_seen(std::int64_t step_voxel, double voxel_m) {
+  return static_cast<float>(std::min(1.0, kPatch_m / (static_cast<double>(step_voxel) * voxel_m)));
+}
+
+RockPoint rock_point(const WorldFunction::Terms& t, const RockPlace& place) {
+  const glm::i64vec2 voxel(wrapped(place.column_voxel.x, t.wrap_voxel), place.column_voxel.y);
+  return {place.stack_m, place.choice, place.height_m, glm::dvec2(voxel) * t.voxel_m,
+          static_cast<double>(place.step_voxel) * t.voxel_m};
+}
+
 }  // namespace
 
 Material WorldFunction::cover(const CoverPlace& place) const {
@@ -44,8 +55,9 @@ Material WorldFunction::cover(const CoverPlace& place) const {
   const float height = place.height_m;
   const float ridge = place.ridge;
   const glm::i64vec2 column_voxel(wrapped(place.column_voxel.x, t.wrap_voxel), place.column_voxel.y);
-  const float dot = speckle(t.manifest.seed, column_voxel);
-  const float sway = 0.2f * dot + 1.2f * patches(t.manifest.seed, column_voxel, t.voxel_m);
+  const float seen = chance_seen(place.step_voxel, t.voxel_m);
+  const float dot = seen * speckle(t.manifest.seed, column_voxel);
+  const float sway = 0.2f * dot + seen * (1.2f * patches(t.manifest.seed, column_voxel, t.voxel_m));
   const float cosine = std::max(place.up, 0.05f);
   const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
   const float steep = slope + 0.16f * sway;
@@ -89,16 +101,12 @@ Material WorldFunction::sheltered(float height_m, float up) const {
   return height_m < terms_->beach_m ? Material::kSand : Material::kScree;
 }
 
-Material WorldFunction::rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
-  column_voxel.x = wrapped(column_voxel.x, terms_->wrap_voxel);
-  const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
-  return terms_->strata->rock_at(stack_m, choice, height_m, place_m);
+Material WorldFunction::rock(const RockPlace& place) const {
+  return terms_->strata->rock_at(rock_point(*terms_, place));
 }
 
-LayerPlace WorldFunction::layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const {
-  column_voxel.x = wrapped(column_voxel.x, terms_->wrap_voxel);
-  const glm::dvec2 place_m = glm::dvec2(column_voxel) * terms_->voxel_m;
-  return terms_->strata->layer_at(stack_m, choice, height_m, place_m);
+LayerPlace WorldFunction::layer(const RockPlace& place) const {
+  return terms_->strata->layer_at(rock_point(*terms_, place));
 }
 
 }  // namespace talus

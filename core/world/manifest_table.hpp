@@ -88,6 +88,7 @@ inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
 
   {"strata.sets", "", 2, 64, 12, true, "Layer sets of the world: more means more kinds of country before one comes again."},
   {"strata.set_m", "m", 500, 100000, 9000, false, "Wavelength at which layer sets change: more means wider countries of one rock."},
+  {"strata.facies_m", "m", 50, 20000, 600, false, "Wavelength at which a layer's rock changes: more means beds that stay of one rock for longer, less means patches."},
   {"strata.deformation_m", "m", 0, 400, 120, false, "How far folds lift and lower the layers: more bends them more."},
   {"strata.fold_m", "m", 200, 20000, 3500, false, "Wavelength of the largest folds: less means tighter ones."},
   {"strata.tilt_m", "m", 0, 400, 240, false, "How far whole regions of layers tilt: more means steeper dips."},

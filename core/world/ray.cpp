@@ -188,7 +188,8 @@ class Caster {
                        ? world_.sheltered(height, up)
                        : world_.cover({height, up, b.ridge[column], b.hilliness[column], b.beach[column], voxel,
                                        b.districts_at(column)});
-    if (out.material == Material::kRock) out.material = world_.rock(b.stack_m[column], b.choice[column], height, voxel);
+    if (out.material == Material::kRock)
+      out.material = world_.rock({b.stack_m[column], b.choice[column], height, voxel});
     return out;
   }
 

@@ -184,8 +184,9 @@ WorldFunction::Terms terms_of(Manifest manifest) {
              m.number("relief.gain"), m.seed(6)};
   t.erosion = erosion_of(m);
   t.frequency_share = m.real("erosion.frequency_share");
-  t.strata = std::make_unique<const Strata>(
-      StrataControls{m.whole("strata.sets"), m.real("strata.ledge"), m.real("strata.ledge_slope"), m.seed(9)});
+  t.strata = std::make_unique<const Strata>(StrataControls{m.whole("strata.sets"), m.real("strata.ledge"),
+                                                           m.real("strata.ledge_slope"), m.number("strata.facies_m"),
+                                                           m.number("world.wrap_m"), m.seed(9)});
   read_districts(m, t);
   t.profile = std::make_unique<const HardnessProfile>(*t.strata);
   t.warp = warp_of(manifest);

@@ -96,6 +96,16 @@ struct CoverPlace {
   float beach = 0;
   glm::i64vec2 column_voxel{0, 0};
   DistrictShares districts{};
+  std::int64_t step_voxel = 1;  ///< of the lattice that asks
+};
+
+/// A point in rock.
+struct RockPlace {
+  float stack_m = 0;  ///< of its column
+  float choice = 0;   ///< the same
+  float height_m = 0;
+  glm::i64vec2 column_voxel{0, 0};
+  std::int64_t step_voxel = 1;  ///< of the lattice that asks: a wide cell shows what most of it is made of
 };
 
 /// Working memory of one thread for warp and carving (core/world/volume_scratch.hpp).
@@ -129,10 +139,10 @@ class WorldFunction {
   Material cover(const CoverPlace& place) const;
   /// What covers the ground where rock hangs over it.
   Material sheltered(float height_m, float up) const;
-  /// The rock of the layer at `height_m` in a column of this stack and choice.
-  Material rock(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
+  /// The rock of the layer at a point.
+  Material rock(const RockPlace& place) const;
   /// That layer.
-  LayerPlace layer(float stack_m, float choice, float height_m, glm::i64vec2 column_voxel) const;
+  LayerPlace layer(const RockPlace& place) const;
 
   struct Terms;  ///< the manifest as the kernels want it (core/world/terms.hpp)
   const Terms& terms() const { return *terms_; }

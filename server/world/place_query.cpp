@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "core/grid/chunk_key.hpp"
@@ -135,16 +136,23 @@ std::string points_json(const WorldFunction& world, std::span<const glm::dvec2> 
     const auto surface_m = static_cast<float>(height);
     Material material = world.cover({surface_m, static_cast<float>(up), static_cast<float>(ridge), block.hilliness[0],
                                      block.beach[0], voxel, block.districts_at(0)});
-    if (material == Material::kRock) material = world.rock(block.stack_m[0], block.choice[0], surface_m, voxel);
-    const LayerPlace layer = world.layer(block.stack_m[0], block.choice[0], surface_m, voxel);
+    const RockPlace under{block.stack_m[0], block.choice[0], surface_m, voxel};
+    if (material == Material::kRock) material = world.rock(under);
+    const LayerPlace layer = world.layer(under);
     const PlatePlace plate = world.plate_at(place, block.workspace);
+    const DistrictShares districts = block.districts_at(0);
+    const auto most = std::ranges::max_element(districts);
+    // What has less than half of the ground is a border, not a name.
+    const std::string_view district =
+        *most < 0.5f ? "" : kDistrictNames[static_cast<std::size_t>(most - districts.begin())];
     if (out.back() != '[') out += ',';
-    fmt::format_to(std::back_inserter(out),
-                   R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","layer":{},"layer_set":{},)"
-                   R"("plate":"{},{}","plate_kind":"{}","fault":"{}","fault_m":{:.1f},"ridge":{:.4f}}})",
-                   place.x, place.y, height, slope, info_of(material).name, layer.index, layer.set, plate.plate.key.x,
-                   plate.plate.key.z, plate.traits.kind == PlateKind::kContinental ? "continental" : "oceanic",
-                   name_of(plate.fault), std::abs(plate.fault_m), ridge);
+    fmt::format_to(
+        std::back_inserter(out),
+        R"({{"x":{},"z":{},"height_m":{:.3f},"slope":{:.4f},"material":"{}","layer":{},"layer_set":{},)"
+        R"("plate":"{},{}","plate_kind":"{}","fault":"{}","fault_m":{:.1f},"ridge":{:.4f},"district":"{}"}})",
+        place.x, place.y, height, slope, info_of(material).name, layer.index, layer.set, plate.plate.key.x,
+        plate.plate.key.z, plate.traits.kind == PlateKind::kContinental ? "continental" : "oceanic",
+        name_of(plate.fault), std::abs(plate.fault_m), ridge, district);
   }
   return out + "]}";
 }

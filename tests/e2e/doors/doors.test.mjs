@@ -132,7 +132,7 @@ describe('a server with the built-in world', () => {
     assert.equal(answer.status, 200);
     assert.equal(answer.json.points.length, 2);
     assert.equal(answer.json.points[1].x, 1000.5);
-    for (const field of ['x', 'z', 'height_m', 'slope', 'material', 'layer', 'layer_set', 'plate', 'plate_kind', 'fault', 'fault_m', 'ridge']) {
+    for (const field of ['x', 'z', 'height_m', 'slope', 'material', 'layer', 'layer_set', 'plate', 'plate_kind', 'fault', 'fault_m', 'ridge', 'district']) {
       assert.ok(field in answer.json.points[0], field);
     }
     const many = Array.from({ length: 1001 }, (_, i) => `${i},0`).join(';');

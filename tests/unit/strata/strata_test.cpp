@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -94,19 +96,47 @@ TEST(Strata, MakesHardBedsSteeperThanSoftOnes) {
   EXPECT_LT(soft / softs, 0.9);
 }
 
-TEST(Strata, GivesEachRockItsShareOfALayersArea) {
+TEST(Strata, KeepsTheRockOfALayerInPatches) {
   const Strata strata = strata_of(1.6f);
-  const int index = strata.set(2).index_at(2'000);
-  const Layer& layer = strata.set(2).layer(index);
-  const float height = 3'600 - 0.5f * (strata.set(2).top_m(index) + strata.set(2).top_m(index + 1));
   testing::Random random(12);
-  int first = 0;
-  constexpr int kPlaces = 40'000;
-  for (int n = 0; n < kPlaces; ++n) {
-    const glm::dvec2 place{random.real(-1e7, 1e7), random.real(-1e7, 1e7)};
-    first += strata.rock_at(3'600, 2.0f, height, place) == layer.rocks[0] ? 1 : 0;
+  int near_changes = 0;
+  int far_changes = 0;
+  for (int n = 0; n < 4'000; ++n) {
+    const int index = static_cast<int>(random.whole(100, kLayers - 100));
+    const float height = 3'600 - 0.5f * (strata.set(2).top_m(index) + strata.set(2).top_m(index + 1));
+    const glm::dvec2 place{random.real(-1e9, 1e9), random.real(-1e9, 1e9)};
+    const auto rock = [&](const glm::dvec2& at) { return strata.rock_at({3'600, 2.0f, height, at}); };
+    near_changes += rock(place) != rock(place + glm::dvec2(3, 0)) ? 1 : 0;
+    far_changes += rock(place) != rock(place + glm::dvec2(5'000, 0)) ? 1 : 0;
   }
-  EXPECT_NEAR(static_cast<double>(first) / kPlaces, static_cast<double>(layer.cumulative[0]), 0.01);
+  EXPECT_GT(far_changes, 1'000) << "of 4000: rocks change from place to place";
+  EXPECT_LT(near_changes, 120) << "of 4000: but not from step to step";
+  EXPECT_GT(near_changes, 4);
+}
+
+TEST(Strata, ShowsAWideCellTheRockThatMostOfItIsMadeOf) {
+  const Strata strata = strata_of(1.6f);
+  const LayerSet& set = strata.set(4);
+  testing::Random random(21);
+  for (int n = 0; n < 300; ++n) {
+    const double span = static_cast<double>(16 << (n % 6));
+    const double depth = std::floor(random.real(300, 4'800));
+    // Metres of every rock within half a span, layer by layer.
+    std::array<double, kMaterials.size()> metres{};
+    for (int index = 0; index < kLayers; ++index) {
+      const double inside = std::min(depth + span / 2, static_cast<double>(set.top_m(index + 1))) -
+                            std::max(depth - span / 2, static_cast<double>(set.top_m(index)));
+      double below = 0;
+      for (std::size_t k = 0; k < kRocksPerLayer; ++k) {
+        const auto share = static_cast<double>(set.layer(index).cumulative[k]);
+        metres[static_cast<std::size_t>(set.layer(index).rocks[k])] += std::max(inside, 0.0) * (share - below);
+        below = share;
+      }
+    }
+    const Material rock =
+        strata.rock_at({5'000, 4.0f, static_cast<float>(5'000 - depth - 0.5), {random.real(-1e6, 1e6), 0}, span});
+    EXPECT_NEAR(metres[static_cast<std::size_t>(rock)], std::ranges::max(metres), 0.01) << depth << " over " << span;
+  }
 }
 
 TEST(Strata, GivesTheSameBitsOnEveryTarget) {

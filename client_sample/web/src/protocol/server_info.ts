@@ -112,6 +112,8 @@ export function groundFacts(point: unknown, material?: string, heightM?: number)
     height < 0 ? `sea ${Math.round(-height)} m deep` : `${Math.round(height)} m`,
     String(material ?? field(point, 'material') ?? '').replaceAll('_', ' '),
   ];
+  const district = field(point, 'district');
+  if (typeof district === 'string') words.push(district);
   const layer = field(point, 'layer');
   if (typeof layer === 'number') words.push(`layer ${layer} of set ${String(field(point, 'layer_set') ?? '?')}`);
   const kind = field(point, 'plate_kind');

@@ -39,5 +39,7 @@ test('words of a place leave out what the server does not know', () => {
   expect(groundFacts({ ...point, height_m: -35.2, plate: 12, plate_kind: 'oceanic', fault_m: -2340 }).text).toBe(
     'sea 35 m deep · stream bed · layer 812 of set 3 · sea plate 12 · fault 2.3 km away',
   );
+  expect(groundFacts({ ...point, district: 'badlands' }).text).toBe('1204 m · stream bed · badlands · layer 812 of set 3');
+  expect(groundFacts({ ...point, district: '' }).text).toBe('1204 m · stream bed · layer 812 of set 3');
   expect(() => groundFacts({})).toThrow(/height_m/);
 });
