@@ -52,7 +52,7 @@ class Painter {
         return plate(b, i, k, at);
       case MapLayer::kFaults:
         return fault(b, i, k, at);
-      case MapLayer::kDistricts:
+      case MapLayer::kDistrictWeights:
         return district(b, at);
     }
     return {};

@@ -29,7 +29,7 @@ enum class MapLayer : std::uint8_t {
   kHilliness,
   kPlates,
   kFaults,
-  kDistricts
+  kDistrictWeights
 };
 
 /// The word of every layer, by its number.
