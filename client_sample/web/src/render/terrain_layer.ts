@@ -16,7 +16,7 @@ import fragmentShader from './shaders/terrain.frag?raw';
 import vertexShader from './shaders/terrain.vert?raw';
 import { strataTable } from './tables';
 
-const kPaletteSize = 16; // of the shaders' array: seven covers, then rocks
+const kPaletteSize = 32; // of the shaders' array: seven covers, then rocks
 
 /// A chunk that can be drawn and stood on, or the strip of one of its faces.
 export class ChunkMesh implements PlacedSurface {

@@ -11,7 +11,7 @@ out vec4 colour;
 uniform sampler2D uNoise;
 uniform sampler2D uStrataThick;
 uniform sampler2D uStrataThin;
-uniform vec3 uPalette[16];  // linear
+uniform vec3 uPalette[32];  // linear
 uniform vec3 uSkyAbove;    // irradiance / pi on a level plane from the sky
 uniform vec3 uSkyAround;   // the same on an upright one
 

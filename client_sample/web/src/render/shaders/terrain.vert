@@ -8,7 +8,7 @@ uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec3 uCameraPlace;  // xz: camera modulo the texture period; y: height above the sea
-uniform vec3 uPalette[16];  // linear
+uniform vec3 uPalette[32];  // linear
 out vec3 vRelative;
 out vec3 vPlace;
 out vec3 vNormal;
@@ -28,6 +28,6 @@ void main() {
   vCoverB = vec3(equal(vec3(material), vec3(4.0, 5.0, 6.0)));
   bool isRock = material > 6.5;
   if (isRock) vCoverA.x = 1.0;
-  vRock = uPalette[isRock ? min(int(material + 0.5), 15) : 0];
+  vRock = uPalette[isRock ? min(int(material + 0.5), 31) : 0];
   gl_Position = projectionMatrix * (viewMatrix * relative);
 }
