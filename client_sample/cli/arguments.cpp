@@ -19,6 +19,7 @@ constexpr const char* kFooter = R"(Examples:
   talus fly --viewers 50 --seconds 300 --json
   talus fly --until-complete --far 2000 --seconds 60     # time to a complete view
   talus load --fly 50 --fetch 1 --metrics http://127.0.0.1:9090   # a crowd, and one who asks for chunks over HTTP
+  talus pregen --area 0,0,4 --progress start.pregen      # 4 km around the origin, into the server's disk cache
   talus map --area 0,0,64 -o map.png                     # 64 km around the origin
   talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
   talus section --from -2000,0 --to 2000,500 -o cut.png
@@ -27,7 +28,7 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes:
   0 done   1 server, network or file failed   2 wrong command line   3 chunk without a surface
-  4 manifest with faults   5 fly: a viewer failed or its view was never complete; load: faults)";
+  4 manifest with faults   5 fly: a viewer failed or its view was never complete; load: faults; pregen: time was up)";
 
 void add_server(CLI::App& app, ServerOptions& server) {
   app.add_option("--server", server.url, "URL of the server; fly also takes tcp://HOST:PORT")->capture_default_str();
@@ -45,6 +46,7 @@ struct Arguments {
   InfoOptions info;
   FlyOptions fly;
   LoadOptions load;
+  PregenOptions pregen;
   MapOptions map;
   SectionOptions section;
   SurveyOptions survey;
@@ -117,6 +119,23 @@ void add_load(CLI::App& app, Arguments& arguments) {
   }
   load->add_flag("--json", options.is_json, "the report as one line of JSON; progress goes to standard error");
   load->callback([&arguments] { arguments.command = [&arguments] { return cli::load(arguments.load); }; });
+}
+
+void add_pregen(CLI::App& app, Arguments& arguments) {
+  PregenOptions& options = arguments.pregen;
+  CLI::App* pregen = app.add_subcommand("pregen", "Make a server fill its disk cache with a square of a world");
+  add_server(*pregen, options.server);
+  pregen->add_option("--area", options.area, "x,z,km: centre in metres, edge in kilometres")->required();
+  pregen->add_option("--lod-low", options.lod_low, "finest LOD")->capture_default_str()->check(CLI::Range(0, kLodMax));
+  pregen->add_option("--lod-high", options.lod_high, "coarsest LOD")
+      ->capture_default_str()
+      ->check(CLI::Range(0, kLodMax));
+  pregen->add_option("--progress", options.progress,
+                     "file that remembers how far it is: run again to go on from there");
+  pregen->add_option("--seconds", options.seconds, "how long at most")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 31536000.0));
+  pregen->callback([&arguments] { arguments.command = [&arguments] { return cli::pregen(arguments.pregen); }; });
 }
 
 std::vector<std::string> layer_names() {
@@ -198,6 +217,7 @@ int run(int argc, char** argv) {
   add_info(app, arguments);
   add_fly(app, arguments);
   add_load(app, arguments);
+  add_pregen(app, arguments);
   add_map(app, arguments);
   add_section(app, arguments);
   add_survey(app, arguments);

@@ -66,6 +66,17 @@ struct LoadOptions {
 /// Many clients at once; kIncomplete if anything was wrong with what they got.
 ExitCode load(const LoadOptions& options);
 
+struct PregenOptions {
+  ServerOptions server;
+  std::string area;  ///< x,z of the centre in metres and the edge in km
+  int lod_low = 0;
+  int lod_high = 8;
+  std::string progress;  ///< file to go on from; empty: none
+  double seconds = 86400;
+};
+/// Makes a server fill its caches with a square; kIncomplete if the time was up before.
+ExitCode pregen(const PregenOptions& options);
+
 struct MapOptions {
   std::string manifest;  ///< file; empty: the default world
   std::string area;      ///< x,z of the centre in metres and the edge in km

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -22,6 +23,11 @@ void complain(std::string_view verb, const std::string& path) {
 }
 
 }  // namespace
+
+bool has_file(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
 
 std::optional<std::string> load_file(const std::string& path, std::size_t bytes_max) {
   const File file(std::fopen(path.c_str(), "rb"));

@@ -11,6 +11,7 @@
 
 namespace talus::cli {
 
+bool has_file(const std::string& path);
 std::optional<std::string> load_file(const std::string& path, std::size_t bytes_max);
 /// "-" is standard output.
 bool store_file(const std::string& path, std::string_view bytes);

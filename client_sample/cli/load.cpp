@@ -56,7 +56,7 @@ ExitCode load(const LoadOptions& options) {
     if (!run.admin) return kUsage;
   }
   std::signal(SIGINT, [](int) { interrupted = 1; });
-  run.is_interrupted = [] { return interrupted != 0; };
+  run.is_over = [](const load::Report&) { return interrupted != 0; };
   run.on_line = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
 
   const auto report = load::run(*scenario, run);

@@ -63,6 +63,20 @@ std::expected<void, std::string> stand_on_ground(const Stage& stage, std::span<g
   return {};
 }
 
+/// Who walks and would begin in the sea begins on the land next to it.
+std::expected<void, std::string> come_ashore(const Stage& stage, Way& way) {
+  if (way.from.y > stage.world.sea_level_m) return {};
+  const auto answer = client::http_get(stage.http, "/v1/worlds/" + stage.world.name +
+                                                       "/spawn?near=" + std::to_string(std::llround(way.from.x)) + ',' +
+                                                       std::to_string(std::llround(way.from.z)));
+  if (!answer) return std::unexpected(answer.error().message);
+  const auto land = client::parse_spawn(answer->body);
+  if (!land) return {};  // the world has none near here: one walks on water
+  way.to = *land + glm::dvec3{way.to.x - way.from.x, 0, way.to.z - way.from.z};
+  way.from = *land;
+  return {};
+}
+
 struct Planned {
   BotKind kind{};
   double start_s = 0;
@@ -139,6 +153,9 @@ std::expected<Crowd, std::string> gather(Stage& stage) {
   Crowd out;
   std::uint64_t seed = static_cast<std::uint64_t>(stage.scenario.seed);
   for (Planned& bot : planned) {
+    if (bot.kind == BotKind::kWalk) {
+      if (auto ashore = come_ashore(stage, bot.ways.front()); !ashore) return std::unexpected(ashore.error());
+    }
     rise(bot);
     out.push_back(make(stage, std::move(bot), ++seed));
   }

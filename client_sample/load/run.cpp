@@ -46,7 +46,7 @@ void drive(const Stage& stage, const RunOptions& options, Crowd& crowd) {
   double next_line_s = 1;
   for (;;) {
     const double now_s = stage.now_s();
-    if (now_s >= stage.scenario.seconds || (options.is_interrupted && options.is_interrupted())) return;
+    if (now_s >= stage.scenario.seconds || (options.is_over && options.is_over(stage.report))) return;
     for (const auto& bot : crowd) bot->tick(now_s);
     if (now_s >= next_line_s && options.on_line) {
       options.on_line(line_of(stage.report, chunks_before, bytes_before, crowd, now_s));

@@ -17,7 +17,7 @@ struct RunOptions {
   std::optional<client::ServerAddress> admin;  ///< whose /metrics are read before and after
   std::string world = "default";
   std::function<void(const std::string&)> on_line;  ///< once a second, how far it is
-  std::function<bool()> is_interrupted;             ///< ends the run early
+  std::function<bool(const Report&)> is_over;       ///< ends the run early
 };
 
 /// Ends after scenario.seconds and what saying goodbye takes. The error is a sentence: the run could not begin.

@@ -8,8 +8,6 @@ namespace {
 
 /// As the browser viewer does.
 constexpr double kLookEvery_s = 0.1;
-/// A stalled reader has had this long to begin to take chunks.
-constexpr double kStallAfter_s = 1.0;
 
 }  // namespace
 
@@ -84,7 +82,8 @@ void ViewerBot::tick(double now_s) {
     owed_bytes_ -= bytes;
     stream_->give_credit(bytes);
   }
-  if (plan_.kind == BotKind::kStall && info_known_ && !is_stalled_ && now_s >= connected_s_ + kStallAfter_s) {
+  // It has begun to take chunks, so the server believes in it.
+  if (plan_.kind == BotKind::kStall && has_chunk_ && !is_stalled_) {
     is_stalled_ = true;
     stalled_s_ = now_s;
     stream_->stall();

@@ -13,7 +13,7 @@ import { promisify } from 'node:util';
 import { startServer } from '../e2e/doors/frame/server.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
-const talus = join(root, 'build/release/bin/talus');
+const talus = process.env.TALUS ?? join(root, 'build/release/bin/talus');
 const ticks_per_s = 100; // of /proc: USER_HZ on every Linux
 
 const ms = (seconds) => (seconds === undefined ? '-' : (seconds * 1e3).toFixed(seconds < 0.1 ? 2 : 0));

@@ -97,3 +97,43 @@ describe('talus', () => {
     assert.match(nobody.err, /127\.0\.0\.1:1/);
   });
 });
+
+test('pregen fills the disk cache, goes on where it was, and a server that starts anew makes nothing of the area', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'talus-pregen-'));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const serve = () => startServer(['--disk-cache', join(folder, 'cache')]);
+  const pregen = (server, ...more) =>
+    talus('pregen', '--server', `http://${server.ready.http}`, '--area', '0,0,0.5', '--lod-low', '2', '--lod-high', '4', ...more);
+  const progress = join(folder, 'progress');
+
+  const first = await serve();
+  try {
+    const cut = await pregen(first, '--progress', progress, '--seconds', '0.1');
+    assert.equal(cut.code, 5, cut.err);
+    assert.match(readFileSync(progress, 'utf8'), /^talus pregen [0-9a-f]{64} 0,0,0\.5 2\.\.4\n\d+\n$/);
+    const rest = await pregen(first, '--progress', progress);
+    assert.equal(rest.code, 0, rest.err);
+    const [, done, all] = rest.out.match(/^(\d+) of (\d+) columns/);
+    assert.equal(done, all);
+    assert.equal(Number(readFileSync(progress, 'utf8').split('\n')[1]), Number(all));
+    const again = await pregen(first, '--progress', progress);
+    assert.equal(again.code, 0);
+    assert.match(again.out, /, 0 surfaces,/);
+    const other = await talus('pregen', '--server', `http://${first.ready.http}`, '--area', '9,9,1', '--progress', progress);
+    assert.equal(other.code, 1);
+    assert.match(other.err, /something else/);
+  } finally {
+    await first.stop();
+  }
+
+  const second = await serve();
+  try {
+    const stored = await pregen(second);
+    assert.equal(stored.code, 0, stored.err);
+    assert.doesNotMatch(stored.out, /, 0 surfaces,/);
+    const metrics = await (await fetch(`http://${second.ready.admin}/metrics`)).text();
+    assert.match(metrics, /talus_chunk_requests_total\{outcome="built"\} 0\n/);
+  } finally {
+    await second.stop();
+  }
+});
