@@ -23,6 +23,7 @@ constexpr const char* kFooter = R"(Examples:
   talus map --area 0,0,64 -o map.png                     # 64 km around the origin
   talus map --area 0,0,4 --layer materials --contours 50 --size 2048 -o rocks.png
   talus section --from -2000,0 --to 2000,500 -o cut.png
+  talus view --at 4830,20,39285 --yaw 200 -o arch.png
   talus manifest check worlds/alps.toml
   talus manifest explain erosion.gully_weight
 
@@ -49,6 +50,7 @@ struct Arguments {
   PregenOptions pregen;
   MapOptions map;
   SectionOptions section;
+  ViewOptions view;
   SurveyOptions survey;
   GalleryOptions gallery;
   std::string checked;
@@ -169,11 +171,33 @@ void add_section(CLI::App& app, Arguments& arguments) {
   section->callback([&arguments] { arguments.command = [&arguments] { return cli::section(arguments.section); }; });
 }
 
+void add_view(CLI::App& app, Arguments& arguments) {
+  ViewOptions& options = arguments.view;
+  CLI::App* view = app.add_subcommand("view", "Draw a cliff with its caves and arches, up to 200 m wide, as a PNG");
+  view->add_option("--world", options.manifest, "TOML file of the world; else the default world");
+  view->add_option("--at", options.at, "x,y,z in metres: the middle of the picture")->required();
+  view->add_option("--yaw", options.yaw, "degrees; 0 looks along -z (north), grows to the left")
+      ->capture_default_str()
+      ->check(CLI::Range(-360.0, 360.0));
+  view->add_option("--pitch", options.pitch, "degrees, below 0 looks down")
+      ->capture_default_str()
+      ->check(CLI::Range(-89.0, 30.0));
+  view->add_option("--width", options.width_m, "metres across the picture")
+      ->capture_default_str()
+      ->check(CLI::Range(10.0, 200.0));
+  view->add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  view->add_option("-o,--output", options.output, "PNG file")->required();
+  view->callback([&arguments] { arguments.command = [&arguments] { return cli::view(arguments.view); }; });
+}
+
 void add_survey(CLI::App& app, Arguments& arguments) {
   SurveyOptions& options = arguments.survey;
   CLI::App* survey = app.add_subcommand("survey", "Figures of a square of a world, and places worth a visit");
   survey->add_option("--world", options.manifest, "TOML file of the world; else the default world");
   survey->add_option("--area", options.area, "x,z,km: centre in metres, edge in kilometres")->capture_default_str();
+  survey->add_option("--coast", options.coast_blocks, "blocks of 192 m of shore to look into for arches and caves")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 4096));
   survey->add_flag("--json", options.is_json, "one JSON object instead of a table");
   survey->callback([&arguments] { arguments.command = [&arguments] { return cli::survey(arguments.survey); }; });
 }
@@ -182,6 +206,7 @@ void add_gallery(CLI::App& app, Arguments& arguments) {
   GalleryOptions& options = arguments.gallery;
   CLI::App* gallery = app.add_subcommand("gallery", "Draw side by side what single parameters do");
   gallery->add_option("folder", options.folder, "where the PNG files go")->required();
+  gallery->add_option("--worlds", options.worlds, "folder of TOML files, to show side by side as well");
   gallery->add_option("--size", options.size, "pixels along each edge of one picture")
       ->capture_default_str()
       ->check(CLI::Range(64, 1024));
@@ -220,6 +245,7 @@ int run(int argc, char** argv) {
   add_pregen(app, arguments);
   add_map(app, arguments);
   add_section(app, arguments);
+  add_view(app, arguments);
   add_survey(app, arguments);
   add_gallery(app, arguments);
   add_manifest(app, arguments);

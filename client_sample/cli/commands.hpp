@@ -97,9 +97,22 @@ struct SectionOptions {
 };
 ExitCode section(const SectionOptions& options);
 
+struct ViewOptions {
+  std::string manifest;  ///< file; empty: the default world
+  std::string at;        ///< x,y,z in metres: the middle of the picture
+  double yaw = 0;        ///< degrees; 0 looks along -z, grows to the left
+  double pitch = -14;    ///< degrees, below 0 looks down
+  double width_m = 150;
+  std::string size = "960x640";
+  std::string output;
+};
+/// Draws a cliff as it is, caves and arches included, without a server.
+ExitCode view(const ViewOptions& options);
+
 struct SurveyOptions {
   std::string manifest;  ///< file; empty: the default world
   std::string area = "0,0,256";
+  int coast_blocks = 64;  ///< of 192 m, looked into for arches and caves
   bool is_json = false;
 };
 /// Prints figures of a square of a world, and places in it that are worth a visit.
@@ -107,7 +120,8 @@ ExitCode survey(const SurveyOptions& options);
 
 struct GalleryOptions {
   std::string folder;
-  int size = 200;  ///< pixels along each edge of one picture
+  std::string worlds;  ///< folder of TOML files, drawn side by side as well; empty: none
+  int size = 200;      ///< pixels along each edge of one picture
 };
 /// Draws side by side what single parameters do: one PNG a parameter.
 ExitCode gallery(const GalleryOptions& options);

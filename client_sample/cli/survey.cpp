@@ -1,6 +1,7 @@
 // talus survey: figures of a world, as a table or as JSON.
 #include <fmt/format.h>
 
+#include "client_sample/cli/coast_search.hpp"
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
 #include "client_sample/cli/survey.hpp"
@@ -9,7 +10,11 @@
 namespace talus::cli {
 namespace {
 
-void print_table(const Manifest& manifest, const SurveyGrid& grid, const SurveyFigures& f,
+double per_km(int count, double km) {
+  return km > 0 ? count / km : 0;
+}
+
+void print_table(const Manifest& manifest, const SurveyGrid& grid, const SurveyFigures& f, const CoastFigures& c,
                  const std::vector<SurveyPlace>& places) {
   const auto line = [](std::string_view name, const std::string& value) { fmt::print("{:<22} {}\n", name, value); };
   line("world", fmt::format("{}, {:.0f} km square, a column each {:g} m", manifest.name,
@@ -26,6 +31,15 @@ void print_table(const Manifest& manifest, const SurveyGrid& grid, const SurveyF
   line("coast", fmt::format("{:.0f} km at this spacing, dimension {:.2f}", f.coast_km, f.coast_dimension));
   line("overhangs",
        fmt::format("{:.2f} % of land; {:.0f} columns a km of shore", f.overhang_share * 100, f.coast_overhangs_per_km));
+  if (c.shore_km > 0) {
+    line("shore, looked into", fmt::format("{:.1f} km, {:.0f} % of it cliffs, {:.1f} m2 under overhangs a metre of it",
+                                           c.shore_km, c.cliff_share * 100, c.overhang_m2_per_m));
+    const double cliff_km = c.shore_km * c.cliff_share;
+    line("arches and caves", fmt::format("{} and {}: {:.2f} and {:.2f} a km of shore, {:.2f} and {:.2f} a km of cliffs",
+                                         c.arches, c.caves, per_km(c.arches, c.shore_km), per_km(c.caves, c.shore_km),
+                                         per_km(c.arches, cliff_km), per_km(c.caves, cliff_km)));
+    line("loose rock", fmt::format("{} m3 at most", c.loose_m3));
+  }
   for (int bin = 0; bin < kHypsometricBins; ++bin) {
     const double share = f.bin_shares[static_cast<std::size_t>(bin)];
     if (share < 5e-5) continue;
@@ -43,7 +57,7 @@ std::string json_list(const Numbers& numbers) {
   return fmt::format("[{:.6g}]", fmt::join(numbers, ","));
 }
 
-void print_json(const Manifest& manifest, const SurveyGrid& grid, const SurveyFigures& f,
+void print_json(const Manifest& manifest, const SurveyGrid& grid, const SurveyFigures& f, const CoastFigures& c,
                 const std::vector<SurveyPlace>& places) {
   fmt::print(R"({{"world":{},"seed":"{}","edge_km":{},"spacing_m":{},"land_share":{:.5f},"height_percentiles_m":{},)",
              json_string(manifest.name), manifest.seed, grid.edge * grid.spacing_m / 1000, grid.spacing_m, f.land_share,
@@ -52,8 +66,11 @@ void print_json(const Manifest& manifest, const SurveyGrid& grid, const SurveyFi
              f.bin_low_m, f.bin_m, json_list(f.bin_shares), f.sea_mode_m, f.land_mode_m,
              json_list(f.slope_percentiles));
   fmt::print(
-      R"("drainage_km_per_km2":{:.4f},"coast_km":{:.2f},"coast_dimension":{:.4f},"overhang_share":{:.5f},"coast_overhangs_per_km":{:.2f},"places":[)",
+      R"("drainage_km_per_km2":{:.4f},"coast_km":{:.2f},"coast_dimension":{:.4f},"overhang_share":{:.5f},"coast_overhangs_per_km":{:.2f},)",
       f.drainage_km_per_km2, f.coast_km, f.coast_dimension, f.overhang_share, f.coast_overhangs_per_km);
+  fmt::print(
+      R"("shore_km":{:.3f},"cliff_share":{:.4f},"arches":{},"caves":{},"overhang_m2_per_m":{:.3f},"loose_m3":{},"places":[)",
+      c.shore_km, c.cliff_share, c.arches, c.caves, c.overhang_m2_per_m, c.loose_m3);
   std::string_view comma;
   for (const SurveyPlace& place : places) {
     fmt::print(R"({}{{"kind":{},"x":{},"y":{:.1f},"z":{},"why":{}}})", comma, json_string(place.kind), place.place_m.x,
@@ -73,7 +90,10 @@ ExitCode survey(const SurveyOptions& options) {
   const WorldFunction world(*manifest);
   const SurveyGrid grid = survey_grid(world, *area);
   const SurveyFigures figures = survey_figures(world, grid);
-  (options.is_json ? print_json : print_table)(*manifest, grid, figures, survey_places(world, grid));
+  const CoastFigures coast = search_coast(world, grid, options.coast_blocks);
+  std::vector<SurveyPlace> places = survey_places(world, grid);
+  places.insert(places.end(), coast.places.begin(), coast.places.end());
+  (options.is_json ? print_json : print_table)(*manifest, grid, figures, coast, places);
   return kDone;
 }
 

@@ -48,9 +48,10 @@ struct SurveyFigures {
 SurveyFigures survey_figures(const WorldFunction& world, const SurveyGrid& grid);
 
 struct SurveyPlace {
-  std::string kind;  ///< peak, canyon, sea cliff, island chain, inland water, trench, arch
+  std::string kind;  ///< peak, canyon, sea cliff, island chain, inland water, trench, rift, overhang, arch
   glm::dvec3 place_m{};
   std::string why;
+  double worth = 0;  ///< against others of its kind
 };
 
 /// About ten places, the best of each kind, apart from one another. The same for the same grid.

@@ -120,6 +120,33 @@ std::optional<std::pair<Piece, int>> island_chain(const SurveyGrid& g) {
   return best;
 }
 
+/// The deepest place on a rift's axis: as far below the highest ground nearby as anywhere.
+std::optional<SurveyPlace> rift(const WorldFunction& world, const SurveyGrid& g) {
+  constexpr double kAxis_m = 1500;
+  constexpr double kShoulder_m = 4000;
+  const int stride = std::max(1, g.edge / 128);
+  const int reach = std::max(1, static_cast<int>(kShoulder_m / g.spacing_m));
+  ColumnWorkspace workspace;
+  std::optional<SurveyPlace> best;
+  float deepest = 100;
+  for (int k = reach; k + reach < g.edge; k += stride) {
+    for (int i = reach; i + reach < g.edge; i += stride) {
+      const glm::dvec2 place = g.place_m(i, k);
+      const PlatePlace at = world.plate_at(place, workspace);
+      if (at.fault != FaultClass::kRift || std::abs(static_cast<double>(at.fault_m)) > kAxis_m) continue;
+      const float shoulder = std::max(std::min(g.height(i - reach, k), g.height(i + reach, k)),
+                                      std::min(g.height(i, k - reach), g.height(i, k + reach)));
+      const float depth = shoulder - g.height(i, k);
+      if (depth <= deepest) continue;
+      deepest = depth;
+      best = SurveyPlace{"rift",
+                         {place.x, static_cast<double>(g.height(i, k)), place.y},
+                         fmt::format("{:.0f} m below its shoulders", depth)};
+    }
+  }
+  return best;
+}
+
 /// The overhang with the most air below it, of columns a few metres apart around the highest shores.
 std::optional<SurveyPlace> overhang(const WorldFunction& world, const SurveyGrid& g,
                                     const std::vector<Candidate>& cliffs) {
@@ -181,6 +208,7 @@ std::vector<SurveyPlace> survey_places(const WorldFunction& world, const SurveyG
     add("trench", deepest % grid.edge, deepest / grid.edge,
         fmt::format("{:.0f} m deep", -grid.height_m[static_cast<std::size_t>(deepest)]));
   }
+  if (auto found = rift(world, grid)) out.push_back(std::move(*found));
   if (auto found = overhang(world, grid, cliffs)) out.push_back(std::move(*found));
   return out;
 }

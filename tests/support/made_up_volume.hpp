@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "client_sample/cli/rock_block.hpp"
 #include "core/strata/hardness_profile.hpp"
 #include "core/volume/field.hpp"
 #include "core/volume/warp.hpp"
 #include "core/world/terms.hpp"
 #include "tests/support/cliff_coast.hpp"
-#include "tests/support/rock_block.hpp"
 
 namespace talus::testing {
 
@@ -90,10 +90,10 @@ class MadeUpVolume {
   }
 
   /// Voxels of 1 m from (x, y, z) on, evaluated in tiles as chunks are. Width and depth are multiples of 64.
-  RockBlock block(std::int64_t x, std::int64_t y, std::int64_t z, int width, int height, int depth,
-                  Memory& memory) const {
+  cli::RockBlock block(std::int64_t x, std::int64_t y, std::int64_t z, int width, int height, int depth,
+                       Memory& memory) const {
     constexpr int kTile = 64;
-    RockBlock out{width, height, depth, {}};
+    cli::RockBlock out{width, height, depth, {}};
     out.rock.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                     static_cast<std::size_t>(depth));
     for (int dz = 0; dz < depth; dz += kTile) {

@@ -190,10 +190,22 @@ TEST(Cli, DrawsSectionsOfAnyLine) {
   EXPECT_EQ(talus({"section", "--from", "0,0", "--to", "100,0", "--heights", "5,5", "-o", out}), kUsage);
 }
 
+TEST(Cli, DrawsACliffAsItIsSeenFromTheSea) {
+  const Scratch scratch;
+  const std::string out = scratch / "v.png";
+  EXPECT_EQ(talus({"view", "--at", "4845,24,39280", "--yaw", "200", "--size", "24x16", "-o", out}), kDone);
+  EXPECT_EQ(content(out).substr(1, 3), "PNG");
+  for (const char* at : {"0,0", "0,nan,0", "2e9,0,0", "0,900,0"}) {
+    EXPECT_EQ(talus({"view", "--at", at, "-o", out}), kUsage) << at;
+  }
+  EXPECT_EQ(talus({"view", "--at", "0,0,0", "--size", "8x9", "-o", out}), kUsage);
+  EXPECT_EQ(talus({"view", "--at", "0,0,0", "--width", "900", "-o", out}), kUsage);
+}
+
 TEST(Cli, SurveysASquareAsATableOrAsJson) {
-  const std::string table = said({"survey", "--area", "0,0,2"}, kDone);
+  const std::string table = said({"survey", "--area", "0,0,2", "--coast", "1"}, kDone);
   EXPECT_THAT(table, testing::HasSubstr("\nland "));
-  const std::string json = said({"survey", "--area", "0,0,2", "--json"}, kDone);
+  const std::string json = said({"survey", "--area", "0,0,2", "--coast", "1", "--json"}, kDone);
   EXPECT_TRUE(json.starts_with("{\"world\":\"default\"")) << json.substr(0, 60);
   EXPECT_TRUE(json.ends_with("]}\n")) << json;
   EXPECT_EQ(std::ranges::count(json, '{'), std::ranges::count(json, '}'));
@@ -205,6 +217,7 @@ TEST(Cli, DrawsAGalleryOfSmallFiles) {
   EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64"}), kDone);
   EXPECT_EQ(content(scratch / "scales.png").substr(1, 3), "PNG");
   EXPECT_EQ(talus({"gallery", scratch / "absent", "--size", "64"}), kFailed);
+  EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64", "--worlds", scratch / "absent"}), kFailed);
 }
 
 TEST(MapPicture, IsTheLatticeItselfWherePixelsFitIt) {

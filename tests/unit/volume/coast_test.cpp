@@ -10,9 +10,9 @@
 namespace talus {
 namespace {
 
+using cli::RockBlock;
 using testing::CliffCoast;
 using testing::MadeUpVolume;
-using testing::RockBlock;
 
 constexpr std::int64_t kBottom_m = -14;
 constexpr int kHeight_m = 110;
@@ -30,14 +30,14 @@ TEST(Coast, HasArchesCavesAndDeepOverhangsAndNextToNothingFloats) {
   const RockBlock block = coast_block(volume, 1024);
   int arches = 0;
   int caves = 0;
-  for (const testing::Cavity& cavity : find_cavities(block, kSlice)) {
+  for (const cli::Cavity& cavity : find_cavities(block, kSlice)) {
     arches += cavity.is_arch() ? 1 : 0;
     caves += cavity.is_cave() ? 1 : 0;
   }
   const int shore_m = coast_cells(block, kSlice);
   const int overhang = count_overhangs(block, 2);
   const int deep = count_overhangs(block, 6);
-  const auto detached = find_detached(block);
+  const auto detached = cli::find_detached(block);
   const int floating = std::accumulate(detached.begin(), detached.end(), 0);
   std::printf("%d m of shore: %d arches, %d caves, %d m2 under overhangs, %d m2 under deep ones, %zu pieces of %d m3\n",
               shore_m, arches, caves, overhang, deep, detached.size(), floating);
@@ -54,7 +54,7 @@ TEST(Warp, MakesOverhangsAndDetachesNothing) {
   MadeUpVolume volume(coast);
   for (CarvePass& pass : volume.carve.passes) pass.probability = 0;
   const RockBlock block = coast_block(volume, 512);
-  EXPECT_TRUE(find_detached(block).empty());
+  EXPECT_TRUE(cli::find_detached(block).empty());
   EXPECT_GT(count_overhangs(block, 2), coast_cells(block, kSlice) / 4);
   volume.warp.reach_m = 0;
   EXPECT_EQ(count_overhangs(coast_block(volume, 512), 2), 0) << "the surface itself hangs over";

@@ -31,10 +31,10 @@ float drawnDistance(vec2 at, float rayLength) {
 vec2 waveSlope(vec2 at, float distance) {
   vec2 wind = vec2(0.83, 0.56);
   vec2 slope = (texture(uNoise, at / 64.0 + wind * uTime * 0.021).gb - 0.5) * 0.30;
-  // Turned against each other, so that no row of crests repeats.
-  const mat2 turn = mat2(0.79, 0.61, -0.61, 0.79);
-  slope += (texture(uNoise, turn * at / 27.0 - wind * uTime * 0.037).bg - 0.5) * 0.32;
-  slope += (texture(uNoise, at * turn / 8.0 - wind.yx * uTime * 0.06).gb - 0.5) * 0.34 * (1.0 - smoothstep(80.0, 500.0, distance));
+  // Turned against each other, so that no row of crests repeats; both tiles still divide the place's period.
+  const mat2 turn = mat2(0.8, 0.6, -0.6, 0.8);
+  slope += (texture(uNoise, turn * at / 25.6 - wind * uTime * 0.037).bg - 0.5) * 0.32;
+  slope += (texture(uNoise, at * turn / 10.24 - wind.yx * uTime * 0.06).gb - 0.5) * 0.34 * (1.0 - smoothstep(80.0, 500.0, distance));
   slope += (texture(uNoise, at / 512.0 + wind * uTime * 0.004).gb - 0.5) * 0.12;
   return slope;
 }

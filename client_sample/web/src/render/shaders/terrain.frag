@@ -136,7 +136,7 @@ void main() {
   vec3 earth = mix(uPalette[2], vec3(dot(uPalette[2], vec3(0.3, 0.6, 0.1))), 0.30);
   vec3 soil = mix(earth * (0.78 + 0.25 * stone.shape + 0.25 * fine.grain), grass, 0.42 * smoothstep(0.30, 0.05, steep));
   float wet = 1.0 - smoothstep(0.3, 2.2, vPlace.y + stone.shape * 0.8);
-  vec3 sand = uPalette[4] * (0.88 + 0.12 * stone.shape + 0.10 * fine.shape) * mix(1.0, 0.52, wet);
+  vec3 sand = uPalette[4] * (0.90 + 0.05 * stone.shape + 0.05 * fine.shape) * mix(1.0, 0.52, wet);
   vec3 snow = uPalette[5] * (0.93 + 0.05 * boulder.shape);
   vec3 bed = uPalette[6] * (0.60 + 0.65 * fine.grain);
   vec3 albedo = rock * coverA.x + scree * coverA.y + soil * coverA.z + grass * coverA.w;
@@ -148,8 +148,13 @@ void main() {
   albedo = mix(albedo, albedo * 0.6 + vec3(0.155, 0.145, 0.13), streak * stony * 0.75);
   albedo *= 0.92 + 0.16 * (hill.grain - 0.4) + 0.10 * boulder.shape;
 
-  float rough = coverA.x * 1.5 + coverA.y * 1.0 + coverA.z * 0.6 + coverA.w * 0.6 + coverB.x * 0.25 + coverB.y * 0.13 + coverB.z * 0.8;
+  float rough = coverA.x * 1.5 + coverA.y * 1.0 + coverA.z * 0.6 + coverA.w * 0.6 + coverB.x * 0.10 + coverB.y * 0.13 + coverB.z * 0.8;
   vec3 bump = boulder.bump * 1.5 + stone.bump * 1.6 + fine.bump * 1.1 * (1.0 - smoothstep(20.0, 90.0, distance));
+  // Wind lays dry sand in ripples: long across it, steep along it.
+  vec2 across = vec2(0.6, -0.8);
+  vec2 ripple = vec2(dot(vPlace.xz, vec2(0.8, 0.6)) / 5.12, dot(vPlace.xz, across) / 40.96);
+  float rippled = coverB.x * (1.0 - wet) * (1.0 - smoothstep(15.0, 140.0, distance));
+  bump += vec3(0.8, 0.0, 0.6) * ((texture(uNoise, ripple).g - 0.5) * 9.0 * rippled);
   bump -= n * dot(bump, n);
   vec3 bumped = normalize(n - bump * rough);
 

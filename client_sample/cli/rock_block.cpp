@@ -1,11 +1,11 @@
-#include "tests/support/rock_block.hpp"
+#include "client_sample/cli/rock_block.hpp"
 
 #include <algorithm>
 #include <array>
 #include <functional>
 #include <utility>
 
-namespace talus::testing {
+namespace talus::cli {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -198,17 +198,44 @@ std::vector<int> find_detached(const RockBlock& block) {
   return out;
 }
 
+namespace {
+
+bool is_shore(const RockBlock& block, int x, int y, int z) {
+  return block.rock[block.at(x, y, z)] != 0 && std::ranges::any_of(kSides, [&](const auto& side) {
+           return block.rock[block.at(x + side.first, y, z + side.second)] == 0;
+         });
+}
+
+bool rises(const RockBlock& block, int x, int y, int z, int reach) {
+  return std::ranges::any_of(kSides, [&](const auto& side) {
+    for (int n = 0; n <= reach; ++n) {
+      const int nx = x + n * side.first;
+      const int nz = z + n * side.second;
+      if (nx < 0 || nz < 0 || nx >= block.width || nz >= block.depth) return false;
+      if (block.rock[block.at(nx, y, nz)] != 0) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
 int coast_cells(const RockBlock& block, int y) {
   int out = 0;
   for (int z = 1; z + 1 < block.depth; ++z) {
+    for (int x = 1; x + 1 < block.width; ++x) out += is_shore(block, x, y, z) ? 1 : 0;
+  }
+  return out;
+}
+
+int cliff_cells(const RockBlock& block, int y, int rise, int reach) {
+  int out = 0;
+  for (int z = 1; z + 1 < block.depth; ++z) {
     for (int x = 1; x + 1 < block.width; ++x) {
-      if (block.rock[block.at(x, y, z)] == 0) continue;
-      const bool is_shore = std::ranges::any_of(
-          kSides, [&](const auto& side) { return block.rock[block.at(x + side.first, y, z + side.second)] == 0; });
-      out += is_shore ? 1 : 0;
+      out += is_shore(block, x, y, z) && rises(block, x, y + rise, z, reach) ? 1 : 0;
     }
   }
   return out;
 }
 
-}  // namespace talus::testing
+}  // namespace talus::cli

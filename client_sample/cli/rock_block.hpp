@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace talus::testing {
+namespace talus::cli {
 
 /// Bits of 1 m voxels; x varies fastest, then z, then y.
 struct RockBlock {
@@ -47,4 +47,7 @@ std::vector<int> find_detached(const RockBlock& block);
 /// Cells of rock in layer `y` next to air in it: about the length of the coast.
 int coast_cells(const RockBlock& block, int y);
 
-}  // namespace talus::testing
+/// Those of them with rock `rise` voxels higher up within `reach` cells to any of the four sides: cliffs.
+int cliff_cells(const RockBlock& block, int y, int rise, int reach);
+
+}  // namespace talus::cli
