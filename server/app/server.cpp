@@ -10,6 +10,7 @@
 #include "server/net/server.hpp"
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
+#include "server/observe/process_readings.hpp"
 #include "server/world/stored_chunks.hpp"
 #include "server/world/terrain_builder.hpp"
 
@@ -76,7 +77,7 @@ struct Server::Parts {
 
   std::expected<void, std::string> open_disk();
   std::expected<void, std::string> listen();
-  void add_gauges();
+  void add_readings();
   void write_ready_line();
 };
 
@@ -104,35 +105,56 @@ std::expected<void, std::string> Server::Parts::listen() {
   return listen_on(Listen::kAdmin, settings.admin_listen, admin_address);
 }
 
-void Server::Parts::add_gauges() {
-  const auto add = [&](const char* name, const char* help, GaugeReading reading) {
-    metrics.gauge(name, help, std::move(reading));
+void Server::Parts::add_readings() {
+  const auto gauge = [&](const char* name, const char* help, Reading reading) {
+    metrics.watch({name, help, {}, {}, false}, std::move(reading));
   };
-  add("talus_cache_bytes", "Memory cache, overhead included", [this] { return static_cast<double>(cache.bytes()); });
-  add("talus_cache_bytes_max", "What the memory cache may take",
-      [this] { return static_cast<double>(cache.bytes_max()); });
-  add("talus_cache_entries", "Chunks in the memory cache", [this] { return static_cast<double>(cache.entries()); });
+  gauge("talus_ready", "1 while /readyz says so",
+        [this] { return net.is_ready.load(std::memory_order_relaxed) ? 1.0 : 0.0; });
+  gauge("talus_cache_bytes", "Memory cache, overhead included", [this] { return static_cast<double>(cache.bytes()); });
+  gauge("talus_cache_bytes_max", "What the memory cache may take",
+        [this] { return static_cast<double>(cache.bytes_max()); });
+  gauge("talus_cache_entries", "Chunks in the memory cache", [this] { return static_cast<double>(cache.entries()); });
+  using Totals = MemoryCache::Totals;
+  constexpr std::array<std::pair<const char*, std::uint64_t Totals::*>, 5> kTotals{{{"hit", &Totals::hits},
+                                                                                    {"miss", &Totals::misses},
+                                                                                    {"stored", &Totals::stored},
+                                                                                    {"evicted", &Totals::evicted},
+                                                                                    {"recalled", &Totals::recalled}}};
+  for (const auto& [outcome, total] : kTotals) {
+    metrics.watch(
+        {"talus_memory_cache_total", "Entries of the memory cache by what became of them", "outcome", outcome, true},
+        [this, total = total] { return static_cast<double>(cache.totals().*total); });
+  }
   if (const DiskCache* disk = stored.disk(); disk != nullptr) {
-    add("talus_disk_cache_bytes", "Disk cache, as of its last commit",
-        [disk] { return static_cast<double>(disk->bytes()); });
-    add("talus_disk_cache_bytes_max", "What the disk cache may take",
-        [disk] { return static_cast<double>(disk->bytes_max()); });
-    add("talus_disk_cache_pending_bytes", "Chunks waiting to be written to the disk",
-        [disk] { return static_cast<double>(disk->pending_bytes()); });
+    gauge("talus_disk_cache_bytes", "Disk cache, as of its last commit",
+          [disk] { return static_cast<double>(disk->bytes()); });
+    gauge("talus_disk_cache_bytes_max", "What the disk cache may take",
+          [disk] { return static_cast<double>(disk->bytes_max()); });
+    gauge("talus_disk_cache_pending_bytes", "Chunks waiting to be written to the disk",
+          [disk] { return static_cast<double>(disk->pending_bytes()); });
   }
-  constexpr std::array<const char*, kLanes> kLaneGauges{"talus_queue_feet_jobs", "talus_queue_view_jobs",
-                                                        "talus_queue_cover_jobs", "talus_queue_background_jobs"};
+  constexpr std::array<const char*, kLanes> kLaneNames{"feet", "view", "cover", "background"};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    add(kLaneGauges[lane], "Jobs waiting in this lane",
-        [this, lane] { return static_cast<double>(pool.queued(static_cast<Lane>(lane))); });
+    metrics.watch({"talus_queue_jobs", "Jobs waiting, by lane", "lane", kLaneNames[lane], false},
+                  [this, lane] { return static_cast<double>(pool.queued(static_cast<Lane>(lane))); });
   }
-  add("talus_queue_seconds", "When the last of the waiting jobs is expected to start",
-      [this] { return pool.wait_s(); });
-  add("talus_flights", "Chunks waiting or being made", [this] { return static_cast<double>(chunks.flights()); });
-  add("talus_jobs_failed", "Jobs that let an exception escape", [this] { return static_cast<double>(pool.failed()); });
-  add("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });
-  add("talus_sessions", "Streaming sessions open",
-      [this] { return static_cast<double>(net.sessions.load(std::memory_order_relaxed)); });
+  gauge("talus_queue_jobs_max", "Jobs that may wait in a lane",
+        [this] { return static_cast<double>(settings.cold_queue); });
+  gauge("talus_queue_seconds", "When the last of the waiting jobs is expected to start",
+        [this] { return pool.wait_s(); });
+  gauge("talus_pool_threads", "Threads that make chunks", [this] { return static_cast<double>(pool.threads()); });
+  gauge("talus_flights", "Chunks waiting or being made", [this] { return static_cast<double>(chunks.flights()); });
+  metrics.watch({"talus_jobs_failed_total", "Jobs that let an exception escape", {}, {}, true},
+                [this] { return static_cast<double>(pool.failed()); });
+  gauge("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });
+  gauge("talus_connections_max", "Connections that may be open",
+        [this] { return static_cast<double>(settings.limits.connections); });
+  gauge("talus_sessions", "Streaming sessions open",
+        [this] { return static_cast<double>(net.sessions.load(std::memory_order_relaxed)); });
+  gauge("talus_send_queue_bytes", "Frames waiting in all streams, behind what is being written",
+        [this] { return static_cast<double>(net.queued_bytes.load(std::memory_order_relaxed)); });
+  watch_process(metrics, clock.unix_seconds());
 }
 
 void Server::Parts::write_ready_line() {
@@ -156,7 +178,7 @@ std::expected<std::unique_ptr<Server>, std::string> Server::start(const Settings
   auto parts = std::make_unique<Parts>(settings, std::move(*worlds), std::move(*files));
   if (const auto opened = parts->open_disk(); !opened) return std::unexpected(opened.error() + "\n");
   if (const auto listening = parts->listen(); !listening) return std::unexpected(listening.error() + "\n");
-  parts->add_gauges();
+  parts->add_readings();
   parts->write_ready_line();
   parts->network.start(std::move(on_signal));
   parts->net.is_ready.store(true, std::memory_order_relaxed);

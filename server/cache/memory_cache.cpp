@@ -29,7 +29,11 @@ PayloadRef MemoryCache::load(const PayloadName& name) {
   Shard& shard = shard_of(PayloadNameHash{}(name));
   const std::lock_guard lock(shard.mutex);
   const auto found = shard.entries.find(name);
-  if (found == shard.entries.end()) return nullptr;
+  if (found == shard.entries.end()) {
+    ++shard.totals.misses;
+    return nullptr;
+  }
+  ++shard.totals.hits;
   Entry& entry = found->second;
   if (entry.uses < kUsesMax) ++entry.uses;
   return entry.payload;
@@ -53,6 +57,8 @@ void MemoryCache::store(const PayloadName& name, PayloadRef payload) {
   entry.cost = static_cast<std::uint32_t>(cost);
   std::uint64_t& ghost = shard.ghost_of(hash);
   entry.is_main = was_main || ghost == hash;
+  ++shard.totals.stored;
+  if (ghost == hash) ++shard.totals.recalled;
   if (ghost == hash) ghost = 0;
   (entry.is_main ? shard.main : shard.small).push(entry);
 }
@@ -72,6 +78,7 @@ bool MemoryCache::Shard::evict_from_small() {
   if (entry.uses == 0) {
     const std::uint64_t hash = PayloadNameHash{}(*entry.name);
     ghost_of(hash) = hash;
+    ++totals.evicted;
     forget(entry);
     return true;
   }
@@ -85,6 +92,7 @@ bool MemoryCache::Shard::evict_from_small() {
 bool MemoryCache::Shard::evict_from_main() {
   Entry& entry = *main.oldest;
   if (entry.uses == 0) {
+    ++totals.evicted;
     forget(entry);
     return true;
   }
@@ -112,6 +120,19 @@ void MemoryCache::Queue::unlink(Entry& entry) {
   (entry.newer != nullptr ? entry.newer->older : newest) = entry.older;
   (entry.older != nullptr ? entry.older->newer : oldest) = entry.newer;
   bytes -= entry.cost;
+}
+
+MemoryCache::Totals MemoryCache::totals() const {
+  Totals sum;
+  for (const Shard& shard : shards_) {
+    const std::lock_guard lock(shard.mutex);
+    sum.hits += shard.totals.hits;
+    sum.misses += shard.totals.misses;
+    sum.stored += shard.totals.stored;
+    sum.evicted += shard.totals.evicted;
+    sum.recalled += shard.totals.recalled;
+  }
+  return sum;
 }
 
 std::size_t MemoryCache::bytes() const {

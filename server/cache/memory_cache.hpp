@@ -37,6 +37,16 @@ class MemoryCache {
   /// Replaces an entry of the same name. A payload larger than a shard's share is not kept.
   void store(const PayloadName& name, PayloadRef payload);
 
+  /// What has happened since the start.
+  struct Totals {
+    std::uint64_t hits = 0;
+    std::uint64_t misses = 0;
+    std::uint64_t stored = 0;
+    std::uint64_t evicted = 0;   ///< pushed out of either queue
+    std::uint64_t recalled = 0;  ///< stored again soon after it was pushed out: straight to the long queue
+  };
+  Totals totals() const;
+
   std::size_t bytes() const;  ///< overhead included
   std::size_t entries() const;
   std::size_t bytes_max() const { return shard_bytes_max_ * kShards; }
@@ -67,6 +77,7 @@ class MemoryCache {
     std::unordered_map<PayloadName, Entry, PayloadNameHash> entries;
     Queue small;
     Queue main;
+    Totals totals;
     std::vector<std::uint64_t> ghosts;  ///< hashes of names that left the short queue unused
 
     std::size_t bytes() const { return small.bytes + main.bytes; }

@@ -15,6 +15,21 @@ constexpr std::size_t kBatchBytes = 128 * 1024;
 FrameWriter::FrameWriter(NetContext& net, Socket& socket, const Framing& framing)
     : net_(net), socket_(socket), framing_(framing), bell_(socket.get_executor()) {}
 
+FrameWriter::~FrameWriter() {
+  net_.queued_bytes.fetch_sub(told_bytes_, std::memory_order_relaxed);
+}
+
+void FrameWriter::tell_bytes() {
+  // Unsigned: a loss wraps round, and so does the sum back.
+  net_.queued_bytes.fetch_add(queue_.bytes() - told_bytes_, std::memory_order_relaxed);
+  told_bytes_ = queue_.bytes();
+}
+
+void FrameWriter::drop_bulk() {
+  queue_.drop_bulk();
+  tell_bytes();
+}
+
 OutFrame FrameWriter::chunk_frame(const ChunkKey& key, PayloadRef payload) const {
   const auto bytes = static_cast<std::uint32_t>(payload->bytes.size());
   const protocol::ChunkHead head{key, 0, payload->kind, bytes, payload->faces};
@@ -38,6 +53,7 @@ void FrameWriter::send_chunk(OutFrame frame) {
   net_.metrics.add(Count::kChunksSent);
   net_.metrics.add(Count::kChunkBytesSent, frame.message_bytes());
   queue_.push_bulk(std::move(frame));
+  tell_bytes();
   bell_.ring();
 }
 
@@ -50,11 +66,13 @@ OutFrame FrameWriter::frame_of(const protocol::Message& message) const {
 
 void FrameWriter::send_control(const protocol::Message& message) {
   queue_.push_control(frame_of(message));
+  tell_bytes();
   bell_.ring();
 }
 
 void FrameWriter::send_bulk(const protocol::Message& message) {
   queue_.push_bulk(frame_of(message));
+  tell_bytes();
   bell_.ring();
 }
 
@@ -63,12 +81,14 @@ void FrameWriter::push_control(std::vector<std::byte> bytes_of_frame) {
   OutFrame frame;
   frame.message = std::move(bytes_of_frame);
   queue_.push_control(std::move(frame));
+  tell_bytes();
   bell_.ring();
 }
 
 Awaitable<bool> FrameWriter::write_batch() {
   const Instant start = net_.clock.now();
   queue_.pop_batch(kBatchFrames, kBatchBytes, batch_);
+  tell_bytes();
   buffers_.clear();
   for (const OutFrame& frame : batch_) {
     buffers_.emplace_back(frame.head.bytes.data(), frame.head.size);

@@ -17,6 +17,9 @@ class FrameWriter {
  public:
   /// All must outlive the writer.
   FrameWriter(NetContext& net, Socket& socket, const Framing& framing);
+  ~FrameWriter();
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
 
   void send_control(const protocol::Message& message);
   void send_bulk(const protocol::Message& message);
@@ -26,7 +29,7 @@ class FrameWriter {
   void send_chunk(OutFrame frame);
   /// A frame of the framing's own, head and all; nothing when it is empty.
   void push_control(std::vector<std::byte> frame);
-  void drop_bulk() { queue_.drop_bulk(); }
+  void drop_bulk();
 
   bool empty() const { return queue_.empty(); }
   std::size_t bytes() const { return queue_.bytes(); }
@@ -41,6 +44,8 @@ class FrameWriter {
   Awaitable<bool> write_batch();
 
  private:
+  /// Adds what the queue has gained or lost to what all sessions have queued.
+  void tell_bytes();
   OutFrame frame_of(const protocol::Message& message) const;
   OutFrame payload_frame(const protocol::Message& head, PayloadRef payload) const;
 
@@ -48,6 +53,7 @@ class FrameWriter {
   Socket& socket_;
   const Framing& framing_;
   SendQueue queue_;
+  std::size_t told_bytes_ = 0;
   std::vector<OutFrame> batch_;
   std::vector<asio::const_buffer> buffers_;
   Bell bell_;

@@ -23,6 +23,7 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
     {"talus_http_responses_total", "status", "304", ""},
     {"talus_http_responses_total", "status", "4xx", ""},
     {"talus_http_responses_total", "status", "5xx", ""},
+    {"talus_http_body_bytes_total", nullptr, nullptr, "Bytes of the bodies of HTTP answers"},
     {"talus_http_limit_total", "limit", "malformed", "Requests or connections ended by a limit of the HTTP door"},
     {"talus_http_limit_total", "limit", "request_line", ""},
     {"talus_http_limit_total", "limit", "head", ""},
@@ -53,6 +54,10 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
     {"talus_disk_cache_total", "outcome", "evicted", ""},
     {"talus_disk_cache_total", "outcome", "shed", ""},
     {"talus_disk_cache_total", "outcome", "fault", ""},
+    {"talus_column_memo_total", "outcome", "hit", "Columns that a chunk stands on: remembered, or evaluated"},
+    {"talus_column_memo_total", "outcome", "miss", ""},
+    {"talus_height_memo_total", "outcome", "hit", "Squares of ground whose heights were asked for: known or not"},
+    {"talus_height_memo_total", "outcome", "miss", ""},
     {"talus_queries_shed_total", nullptr, nullptr, "Queries of places refused because the pool was full"},
     {"talus_sessions_opened_total", nullptr, nullptr, "Streaming sessions welcomed"},
     {"talus_sessions_refused_total", nullptr, nullptr, "Hellos refused"},
@@ -86,9 +91,9 @@ prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
 
 }  // namespace
 
-void Metrics::gauge(std::string name, std::string help, GaugeReading reading) {
-  const std::lock_guard lock(gauges_mutex_);
-  gauges_.push_back({std::move(name), std::move(help), std::move(reading)});
+void Metrics::watch(ReadingInfo info, Reading reading) {
+  const std::lock_guard lock(watched_mutex_);
+  watched_.push_back({std::move(info), std::move(reading)});
 }
 
 std::string Metrics::text() const {
@@ -112,13 +117,13 @@ std::string Metrics::text() const {
     metric.histogram = snapshot(hops_[i]);
   }
   {
-    const std::lock_guard lock(gauges_mutex_);
-    for (const Gauge& gauge : gauges_) {
-      prometheus::MetricFamily& family = families.emplace_back();
-      family.name = gauge.name;
-      family.help = gauge.help;
-      family.type = prometheus::MetricType::Gauge;
-      family.metric.emplace_back().gauge.value = gauge.reading();
+    const std::lock_guard lock(watched_mutex_);
+    for (const auto& [info, reading] : watched_) {
+      const auto type = info.is_counter ? prometheus::MetricType::Counter : prometheus::MetricType::Gauge;
+      if (families.back().name != info.family) families.push_back({info.family, info.help, type, {}});
+      prometheus::ClientMetric& metric = families.back().metric.emplace_back();
+      if (!info.label.empty()) metric.label.push_back({info.label, info.label_value});
+      (info.is_counter ? metric.counter.value : metric.gauge.value) = reading();
     }
   }
   const prometheus::TextSerializer serializer;

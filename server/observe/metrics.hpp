@@ -1,6 +1,6 @@
 // Everything the server counts, in one table: a limit without a number here cannot be seen to work.
 //
-// Counters and histograms are fixed arrays of atomics, so counting costs one relaxed add and no look-up. Gauges are
+// Counters and histograms are fixed arrays of atomics, so counting costs one relaxed add and no look-up. Readings are
 // functions, asked when the metrics are read. Any thread.
 #pragma once
 
@@ -44,6 +44,7 @@ enum class Count : std::uint8_t {
   kHttpNotModified,
   kHttpClientError,
   kHttpServerError,
+  kHttpBodyBytes,
   kBadRequest,
   kUriTooLong,
   kHeadTooLarge,
@@ -74,6 +75,10 @@ enum class Count : std::uint8_t {
   kDiskEvicted,
   kDiskShed,
   kDiskFault,
+  kColumnsRemembered,
+  kColumnsEvaluated,
+  kHeightsRemembered,
+  kHeightsUnknown,
   kQueryShed,
   kSessionsOpened,
   kSessionsRefused,
@@ -92,7 +97,15 @@ enum class Count : std::uint8_t {
   kEnd
 };
 
-using GaugeReading = std::move_only_function<double() const>;
+using Reading = std::move_only_function<double() const>;
+/// What a reading is called. Readings of one family, told apart by a label, are added one after the other.
+struct ReadingInfo {
+  std::string family;
+  std::string help;
+  std::string label;  ///< name of the one label; empty: none
+  std::string label_value;
+  bool is_counter = false;  ///< it only grows
+};
 
 class Metrics {
  public:
@@ -106,21 +119,20 @@ class Metrics {
   const LatencyHistogram& hop(Hop hop) const { return hops_[static_cast<std::size_t>(hop)]; }
 
   /// `reading` is called whenever the metrics are read, on the reader's thread, and must stay callable until then.
-  void gauge(std::string name, std::string help, GaugeReading reading);
+  void watch(ReadingInfo info, Reading reading);
 
   /// Prometheus' text format, version 0.0.4.
   std::string text() const;
 
  private:
-  struct Gauge {
-    std::string name;
-    std::string help;
-    GaugeReading reading;
+  struct Watched {
+    ReadingInfo info;
+    Reading reading;
   };
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kEnd)> counts_{};
   std::array<LatencyHistogram, static_cast<std::size_t>(Hop::kEnd)> hops_;
-  mutable std::mutex gauges_mutex_;
-  std::vector<Gauge> gauges_;
+  mutable std::mutex watched_mutex_;
+  std::vector<Watched> watched_;
 };
 
 }  // namespace talus::server

@@ -51,6 +51,7 @@ std::optional<RuledOut> TerrainBuilder::ruled_out(const PayloadName& name) const
     return RuledOut{kind, false};
   }
   const auto known = footprints_.load(footprint_of(name));
+  metrics_.add(known ? Count::kHeightsRemembered : Count::kHeightsUnknown);
   if (!known) return std::nullopt;
   const ChunkKind kind =
       kind_by_heights(world, name.key, static_cast<double>(known->low_m), static_cast<double>(known->high_m));
@@ -69,7 +70,9 @@ double TerrainBuilder::predicted_s(const PayloadName& name) const {
 
 void TerrainBuilder::load_columns(std::uint32_t world, const ChunkKey& key, VolumeScratch& volume, ColumnBlock& out) {
   const ColumnName name{world, key.lod, key.x, key.z};
-  if (columns_.load(name, out)) return;
+  const bool is_remembered = columns_.load(name, out);
+  metrics_.add(is_remembered ? Count::kColumnsRemembered : Count::kColumnsEvaluated);
+  if (is_remembered) return;
   const WorldFunction& function = worlds_[world]->function();
   function.columns(chunk_columns(function, key), out);
   function.volume(out, volume);

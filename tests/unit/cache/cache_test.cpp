@@ -71,6 +71,24 @@ TEST(MemoryCache, ForgetsTheLongestUnusedFirst) {
   EXPECT_EQ(cache.load(name_of(1)), nullptr);
 }
 
+TEST(MemoryCache, SaysWhatBecameOfItsEntries) {
+  MemoryCache cache(16 * 10'000);
+  EXPECT_EQ(cache.load(name_of(0)), nullptr);
+  for (std::int32_t i = 0; i < 500; ++i) cache.store(name_of(i), payload_of(2000));
+  const std::size_t kept = cache.entries();
+  EXPECT_EQ(cache.totals().misses, 1U);
+  EXPECT_EQ(cache.totals().hits, 0U);
+  EXPECT_EQ(cache.totals().stored, 500U);
+  EXPECT_EQ(cache.totals().evicted, 500U - kept);
+  EXPECT_EQ(cache.totals().recalled, 0U);
+  // The newest are there, and those that left last are remembered by name.
+  for (std::int32_t i = 500; i-- > 0;) {
+    if (cache.load(name_of(i)) == nullptr) cache.store(name_of(i), payload_of(2000));
+  }
+  EXPECT_GT(cache.totals().hits, 0U);
+  EXPECT_GT(cache.totals().recalled, 0U);
+}
+
 TEST(MemoryCache, CountsAReplacedEntryOnce) {
   MemoryCache cache(1 << 20);
   for (int i = 0; i < 10; ++i) cache.store(name_of(1), payload_of(1000));

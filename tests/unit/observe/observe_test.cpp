@@ -5,6 +5,7 @@
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
 #include "server/observe/metrics.hpp"
+#include "server/observe/process_readings.hpp"
 
 namespace talus::server {
 namespace {
@@ -38,17 +39,37 @@ TEST(LatencyHistogram, CountsInTheBucketWhoseBoundIsTheFirstNotBelow) {
   EXPECT_EQ(histogram.count(kLatencyBuckets - 1), 1U);
 }
 
-TEST(Metrics, WritesEveryCounterHopAndGaugeAsPrometheusReadsThem) {
+TEST(Metrics, WritesEveryCounterHopAndReadingAsPrometheusReadsThem) {
   Metrics metrics;
   metrics.add(Count::kChunkHit, 3);
   metrics.record(Hop::kBuildChunk, microseconds(700));
-  metrics.gauge("talus_answer", "What it is", [] { return 42.0; });
+  metrics.watch({"talus_answer", "What it is", {}, {}, false}, [] { return 42.0; });
+  metrics.watch({"talus_asked_total", "How often", "by", "mice", true}, [] { return 3.0; });
+  metrics.watch({"talus_asked_total", "How often", "by", "men", true}, [] { return 4.0; });
   const std::string text = metrics.text();
   EXPECT_NE(text.find("talus_chunk_requests_total{outcome=\"hit\"} 3"), std::string::npos);
   EXPECT_NE(text.find("talus_hop_seconds_count{hop=\"build_chunk\"} 1"), std::string::npos);
   EXPECT_NE(text.find("talus_hop_seconds_bucket{hop=\"build_chunk\",le=\"+Inf\"} 1"), std::string::npos);
-  EXPECT_NE(text.find("talus_answer 42"), std::string::npos);
+  EXPECT_NE(text.find("# TYPE talus_answer gauge\ntalus_answer 42"), std::string::npos);
+  const std::string asked =
+      "# TYPE talus_asked_total counter\ntalus_asked_total{by=\"mice\"} 3\ntalus_asked_total{by=\"men\"} 4";
+  EXPECT_NE(text.find(asked), std::string::npos) << "one family, both of its readings";
   EXPECT_EQ(text.find("_total{} "), std::string::npos);
+}
+
+TEST(ProcessReadings, SayWhatTheProcessTakes) {
+  Metrics metrics;
+  watch_process(metrics, 1'700'000'000);
+  const std::string text = metrics.text();
+  const auto value = [&](const std::string& name) {
+    const std::size_t at = text.find("\n" + name + " ");
+    return at == std::string::npos ? -1.0 : std::stod(text.substr(at + name.size() + 2));
+  };
+  EXPECT_EQ(value("process_start_time_seconds"), 1'700'000'000.0);
+  EXPECT_GT(value("process_resident_memory_bytes"), 1e6);
+  EXPECT_GE(value("process_open_fds"), 3.0);
+  EXPECT_GT(value("process_max_fds"), value("process_open_fds"));
+  EXPECT_GE(value("process_cpu_seconds_total"), 0.0);
 }
 
 TEST(Log, KnowsItsLevelsByName) {
