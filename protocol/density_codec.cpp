@@ -13,10 +13,10 @@
 namespace talus::protocol {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x64736C74;  // "tlsd"
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint32_t kDensityMagic = 0x64736C74;  // "tlsd"
+constexpr std::uint8_t kDensityVersion = 1;
 /// Zstd levels beyond it save 1 % at twice the time.
-constexpr int kLevel = 1;
+constexpr int kDensityLevel = 1;
 constexpr std::size_t kPlanes = 3;  // low and high bytes of residuals, materials
 
 std::size_t samples_of(int cells) {
@@ -66,8 +66,8 @@ std::expected<std::vector<std::byte>, CodecError> encode_density(const DensityTi
   for (std::size_t at = 0; at < samples; ++at) content[2 * samples + at] = static_cast<std::byte>(tile.materials[at]);
 
   std::vector<std::byte> out;
-  put_number(out, kMagic);
-  put_number(out, kVersion);
+  put_number(out, kDensityMagic);
+  put_number(out, kDensityVersion);
   put_number(out, static_cast<std::uint8_t>(key.lod));
   put_number(out, static_cast<std::uint8_t>(tile.cells));
   put_number(out, std::uint8_t{0});
@@ -75,15 +75,15 @@ std::expected<std::vector<std::byte>, CodecError> encode_density(const DensityTi
   put_number(out, key.y);
   put_number(out, key.z);
   put_number(out, std::bit_cast<std::uint32_t>(static_cast<float>(tile.step_m)));
-  if (const auto packed = append_packed(content, kLevel, out); !packed) return std::unexpected(packed.error());
+  if (const auto packed = append_packed(content, kDensityLevel, out); !packed) return std::unexpected(packed.error());
   return out;
 }
 
 std::expected<DecodedDensity, CodecError> decode_density(std::span<const std::byte> bytes) {
   constexpr auto kMalformed = std::unexpected(CodecError::kMalformed);
   if (bytes.size() > kOutboundMessageBytesMax) return std::unexpected(CodecError::kTooLarge);
-  if (bytes.size() < kDensityHeaderBytes || number_at<std::uint32_t>(bytes, 0) != kMagic ||
-      number_at<std::uint8_t>(bytes, 4) != kVersion || number_at<std::uint8_t>(bytes, 7) != 0) {
+  if (bytes.size() < kDensityHeaderBytes || number_at<std::uint32_t>(bytes, 0) != kDensityMagic ||
+      number_at<std::uint8_t>(bytes, 4) != kDensityVersion || number_at<std::uint8_t>(bytes, 7) != 0) {
     return kMalformed;
   }
   DecodedDensity out;

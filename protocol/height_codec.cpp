@@ -12,10 +12,10 @@
 namespace talus::protocol {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x68736C74;  // "tlsh"
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint32_t kHeightMagic = 0x68736C74;  // "tlsh"
+constexpr std::uint8_t kHeightVersion = 1;
 /// Zstd levels beyond it save 1-2 % at three times the time.
-constexpr int kLevel = 3;
+constexpr int kHeightLevel = 3;
 
 std::size_t columns_of(int cells) {
   return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
@@ -57,8 +57,8 @@ std::expected<std::vector<std::byte>, CodecError> encode_height(const HeightTile
   for (const std::uint8_t material : tile.materials) content.push_back(static_cast<std::byte>(material));
 
   std::vector<std::byte> out;
-  put_number(out, kMagic);
-  put_number(out, kVersion);
+  put_number(out, kHeightMagic);
+  put_number(out, kHeightVersion);
   put_number(out, static_cast<std::uint8_t>(key.lod));
   put_number(out, static_cast<std::uint8_t>(tile.cells));
   put_number(out, static_cast<std::uint8_t>(planes));
@@ -66,15 +66,15 @@ std::expected<std::vector<std::byte>, CodecError> encode_height(const HeightTile
   put_number(out, key.z);
   put_number(out, std::bit_cast<std::uint32_t>(static_cast<float>(tile.step_m)));
   put_number(out, tile.heights[0]);
-  if (const auto packed = append_packed(content, kLevel, out); !packed) return std::unexpected(packed.error());
+  if (const auto packed = append_packed(content, kHeightLevel, out); !packed) return std::unexpected(packed.error());
   return out;
 }
 
 std::expected<DecodedHeight, CodecError> decode_height(std::span<const std::byte> bytes) {
   constexpr auto kMalformed = std::unexpected(CodecError::kMalformed);
   if (bytes.size() > kOutboundMessageBytesMax) return std::unexpected(CodecError::kTooLarge);
-  if (bytes.size() < kHeightHeaderBytes || number_at<std::uint32_t>(bytes, 0) != kMagic ||
-      number_at<std::uint8_t>(bytes, 4) != kVersion) {
+  if (bytes.size() < kHeightHeaderBytes || number_at<std::uint32_t>(bytes, 0) != kHeightMagic ||
+      number_at<std::uint8_t>(bytes, 4) != kHeightVersion) {
     return kMalformed;
   }
   DecodedHeight out;

@@ -35,10 +35,6 @@ glm::dvec3 unit_or(const glm::dvec3& v, const glm::dvec3& absent) {
   return scaled / std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
 }
 
-double edge_of(const WorldShape& shape, int lod) {
-  return static_cast<double>(std::int64_t{shape.cells} << lod) * shape.voxel_m;
-}
-
 /// Distance along one axis from `at` to the closed interval; 0 inside.
 double gap(double at, double low, double high) {
   return std::max({low - at, at - high, 0.0});
@@ -97,6 +93,10 @@ class Walk {
 };
 
 }  // namespace
+
+double edge_of(const WorldShape& shape, int lod) {
+  return std::ldexp(shape.cells * shape.voxel_m, lod);
+}
 
 View clamped(const View& view, const WorldShape& shape) {
   const View initial;

@@ -24,6 +24,9 @@ struct WorldShape {
   glm::dvec2 height_range_m{-1000.0, 4000.0};
 };
 
+/// Metres of a chunk's edge at `lod`, or of a column's; any LOD, those without chunks too.
+double edge_of(const WorldShape& shape, int lod);
+
 /// A view as it came; any bits.
 struct View {
   glm::dvec3 position{};

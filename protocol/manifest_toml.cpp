@@ -23,9 +23,6 @@ std::vector<TomlField> manifest_fields() {
   return fields;
 }
 
-std::string_view section_of(std::string_view name) {
-  return name.substr(0, name.find('.'));
-}
 std::string_view key_of(std::string_view name) {
   return name.substr(name.find('.') + 1);
 }

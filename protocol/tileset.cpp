@@ -28,11 +28,6 @@ int first_content_level(const TileTree& tree) {
   return std::max(tree.levels - 1 - kLodMax, 0);
 }
 
-/// Metres from the lowest to the highest corner of one column of `lod`; any LOD, those without chunks too.
-double edge_of(const WorldShape& shape, int lod) {
-  return std::ldexp(shape.cells * shape.voxel_m, lod);
-}
-
 /// How far a coarse mesh may be from the world: the edge of its cells.
 double error_of(const WorldShape& shape, int lod) {
   return std::ldexp(shape.voxel_m, lod);

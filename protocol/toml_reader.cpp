@@ -11,11 +11,6 @@
 namespace talus::protocol {
 namespace {
 
-std::string_view section_of(std::string_view key) {
-  const std::size_t dot = key.find('.');
-  return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
-}
-
 std::string_view name_of(toml::node_type type) {
   switch (type) {
     case toml::node_type::string:
@@ -230,6 +225,11 @@ std::string describe(const TextFault& fault) {
   if (!out.empty()) out += ": ";
   if (!fault.key.empty()) out += fault.key + ": ";
   return out + fault.message;
+}
+
+std::string_view section_of(std::string_view key) {
+  const std::size_t dot = key.find('.');
+  return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
 std::string format_number(double value) {

@@ -57,6 +57,9 @@ std::expected<std::vector<TomlEntry>, std::vector<TextFault>> read_toml(std::str
 /// The entry of `candidates` that `word` was probably meant to be; empty when none is near.
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 
+/// "section" of "section.key"; empty above the first section.
+std::string_view section_of(std::string_view key);
+
 /// The shortest decimal text, without exponent, that reads back as `value`.
 std::string format_number(double value);
 

@@ -9,10 +9,6 @@
 namespace talus {
 namespace {
 
-glm::vec3 mix(const glm::vec3& a, const glm::vec3& b, float t) {
-  return a + (b - a) * t;
-}
-
 constexpr std::array kSea{
     ColourStop{0.0f, light_of(0x8CC4CC)},    ColourStop{6.0f, light_of(0x6DB0C6)},
     ColourStop{40.0f, light_of(0x4288B2)},   ColourStop{130.0f, light_of(0x2A6299)},
@@ -45,6 +41,10 @@ float weight_of(Material material) {
 }
 
 }  // namespace
+
+glm::vec3 mix(const glm::vec3& a, const glm::vec3& b, float t) {
+  return a + (b - a) * std::clamp(t, 0.0f, 1.0f);
+}
 
 glm::vec3 ramp(std::span<const ColourStop> stops, float at) {
   TALUS_CHECK(!stops.empty());

@@ -29,6 +29,9 @@ constexpr glm::vec3 light_of(std::uint32_t rgb) {
   return {channel(16), channel(8), channel(0)};
 }
 
+/// `a` at t = 0, `b` at 1, and beyond either end as there.
+glm::vec3 mix(const glm::vec3& a, const glm::vec3& b, float t);
+
 /// Linear between stops, constant beyond the ends. Requires at least one stop.
 glm::vec3 ramp(std::span<const ColourStop> stops, float at);
 

@@ -17,10 +17,6 @@ constexpr glm::vec3 kCave = light_of(0x2B2A30);
 constexpr glm::vec3 kSurfaceLine = light_of(0x2C231C);
 constexpr glm::vec3 kDeepRock = light_of(0x4A433F);
 
-glm::vec3 mix(const glm::vec3& a, const glm::vec3& b, float t) {
-  return a + (b - a) * std::clamp(t, 0.0f, 1.0f);
-}
-
 /// The spacing of lattice columns and layers to read: the largest power of two of voxels that is no wider than a pixel.
 std::int64_t step_for(double pixel_m, double voxel_m) {
   std::int64_t step = 1;

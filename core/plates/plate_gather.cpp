@@ -13,7 +13,7 @@ constexpr std::int64_t kRegion_m = 2048;
 /// Sites nearest to a region that other sites are held against: enough to turn nearly all away.
 constexpr std::size_t kTestSites = 16;
 /// Squares around a region that hold every plate with a share in it; see `fill`.
-constexpr std::int64_t kSquares = 3;
+constexpr std::int64_t kShareSquares = 3;
 
 double length2(const glm::i64vec2& v) {
   const auto x = static_cast<double>(v.x);
@@ -67,8 +67,8 @@ void PlateGather::add_sites(const PlateBuilder& builder, const glm::i64vec2& squ
 void PlateGather::fill(const PlateBuilder& builder) {
   const PlateSites& sites = builder.sites();
   around_.clear();
-  const glm::i64vec2 first{sites.square_of(low_m_.x) - kSquares, sites.square_of(low_m_.y) - kSquares};
-  const glm::i64vec2 last{sites.square_of(high_m_.x) + kSquares, sites.square_of(high_m_.y) + kSquares};
+  const glm::i64vec2 first{sites.square_of(low_m_.x) - kShareSquares, sites.square_of(low_m_.y) - kShareSquares};
+  const glm::i64vec2 last{sites.square_of(high_m_.x) + kShareSquares, sites.square_of(high_m_.y) + kShareSquares};
   for (std::int64_t z = first.y; z <= last.y; ++z) {
     for (std::int64_t x = first.x; x <= last.x; ++x) add_sites(builder, {x, z});
   }

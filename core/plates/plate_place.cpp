@@ -11,7 +11,7 @@ namespace talus {
 namespace {
 
 /// Squares around a point's own that hold its nearest site: kSiteReach is little more than one square.
-constexpr std::int64_t kSquares = 2;
+constexpr std::int64_t kNearestSquares = 2;
 
 double length2(const glm::dvec2& v) {
   return v.x * v.x + v.y * v.y;
@@ -22,8 +22,8 @@ Site nearest_site(const PlateSites& sites, const glm::i64vec2& whole_m, const gl
   std::vector<Site> found;
   const std::int64_t x = sites.square_of(whole_m.x);
   const std::int64_t z = sites.square_of(whole_m.y);
-  for (std::int64_t dz = -kSquares; dz <= kSquares; ++dz) {
-    for (std::int64_t dx = -kSquares; dx <= kSquares; ++dx) sites.add_sites(x + dx, z + dz, found);
+  for (std::int64_t dz = -kNearestSquares; dz <= kNearestSquares; ++dz) {
+    for (std::int64_t dx = -kNearestSquares; dx <= kNearestSquares; ++dx) sites.add_sites(x + dx, z + dz, found);
   }
   const auto distance2 = [&](const Site& s) { return length2(glm::dvec2(s.at_m - whole_m) - rest_m); };
   return *std::ranges::min_element(found, [&](const Site& a, const Site& b) {

@@ -60,8 +60,8 @@ namespace {
 
 /// Hardness from which a bed starts to stand proud, and from which it does so fully: shale and mudstone stay back,
 /// sandstones stand out by half or more, massive limestone, basalt and granite fully.
-constexpr float kSoft = 0.25f;
-constexpr float kHard = 0.75f;
+constexpr float kBack = 0.25f;
+constexpr float kProud = 0.75f;
 
 /// Steps of 1/8 m in which layers are averaged; the triangle of +-0.5 m has 9 of them, with weights 0 1 2 3 4 3 2 1 0.
 constexpr int kStepsPerMetre = 8;
@@ -82,7 +82,7 @@ void HardnessProfile::tabulate(const LayerSet& set) {
   for (int n = 0; n < steps; ++n) {
     const float depth_m = static_cast<float>(n) / static_cast<float>(kStepsPerMetre);
     while (index + 1 < kLayers && set.top_m(index + 1) <= depth_m) ++index;
-    proud.push_back(std::clamp((set.layer(index).hardness - kSoft) / (kHard - kSoft), 0.0f, 1.0f));
+    proud.push_back(std::clamp((set.layer(index).hardness - kBack) / (kProud - kBack), 0.0f, 1.0f));
   }
   for (int slice = 0; slice < kProudSlices; ++slice) {
     float sum = 0;

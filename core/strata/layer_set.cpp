@@ -8,8 +8,8 @@
 namespace talus {
 namespace {
 
-constexpr int kSlices = 4096;
-constexpr float kSlicesPerMetre = static_cast<float>(kSlices) / kStackDepth;
+constexpr int kStartSlices = 4096;
+constexpr float kStartSlicesPerMetre = static_cast<float>(kStartSlices) / kStackDepth;
 
 /// Uniform numbers from a seed, one after the other.
 class Draw {
@@ -75,7 +75,7 @@ Layer layer_of(const Mixture& mixture, Draw& draw) {
 
 }  // namespace
 
-LayerSet::LayerSet(std::uint64_t seed) : start_(kSlices) {
+LayerSet::LayerSet(std::uint64_t seed) : start_(kStartSlices) {
   Draw draw(seed);
   std::vector<double> thickness;
   FormationDraw formation(draw);
@@ -101,8 +101,8 @@ LayerSet::LayerSet(std::uint64_t seed) : start_(kSlices) {
   tops_.push_back(kStackDepth);
 
   int index = 0;
-  for (int slice = 0; slice < kSlices; ++slice) {
-    const float depth = static_cast<float>(slice) / kSlicesPerMetre;
+  for (int slice = 0; slice < kStartSlices; ++slice) {
+    const float depth = static_cast<float>(slice) / kStartSlicesPerMetre;
     while (index + 1 < kLayers && tops_[static_cast<std::size_t>(index) + 1] <= depth) ++index;
     start_[static_cast<std::size_t>(slice)] = static_cast<std::uint16_t>(index);
   }
@@ -110,7 +110,7 @@ LayerSet::LayerSet(std::uint64_t seed) : start_(kSlices) {
 
 int LayerSet::index_at(float depth_m) const {
   const float depth = std::clamp(depth_m, 0.0f, kStackDepth);
-  const int slice = std::min(static_cast<int>(depth * kSlicesPerMetre), kSlices - 1);
+  const int slice = std::min(static_cast<int>(depth * kStartSlicesPerMetre), kStartSlices - 1);
   int index = start_[static_cast<std::size_t>(slice)];
   // A slice is 1.25 m and holds the tops of a few layers at most.
   while (index + 1 < kLayers && tops_[static_cast<std::size_t>(index) + 1] <= depth) ++index;

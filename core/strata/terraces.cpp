@@ -80,8 +80,8 @@ constexpr int kAround = 140;
 constexpr double kTread = 0.2;
 constexpr double kWall = 5.0;
 /// Mean hardness at which a tread begins to steepen, and at which it is a wall.
-constexpr double kSoft = 0.50;
-constexpr double kHard = 0.80;
+constexpr double kTreadHardness = 0.50;
+constexpr double kWallHardness = 0.80;
 
 /// Means of `values` over the slices within `reach` of each.
 std::vector<double> windowed(const std::vector<double>& values, int reach) {
@@ -114,7 +114,7 @@ void Terraces::tabulate(const LayerSet& set) {
   }
   std::vector<double> raw;
   for (const double mean : windowed(hardness, kNear)) {
-    const double t = std::clamp((mean - kSoft) / (kHard - kSoft), 0.0, 1.0);
+    const double t = std::clamp((mean - kTreadHardness) / (kWallHardness - kTreadHardness), 0.0, 1.0);
     raw.push_back(kTread + (kWall - kTread) * t * t * (3 - 2 * t));
   }
   const std::vector<double> around = windowed(raw, kAround);

@@ -2,7 +2,7 @@
 
 option(TALUS_TESTS "Build the tests" ON)
 option(TALUS_BENCH "Build the benchmark programs" OFF)
-option(TALUS_TIDY "Run clang-tidy on every source as it compiles" OFF)
+option(TALUS_TIDY "Read every source with clang-tidy, as tests; see TalusTidy" OFF)
 set(TALUS_SANITIZE "" CACHE STRING "Sanitizers of this build: empty, address or thread")
 set_property(CACHE TALUS_SANITIZE PROPERTY STRINGS "" address thread)
 
@@ -44,11 +44,4 @@ if(TALUS_SANITIZE STREQUAL "address")
 elseif(TALUS_SANITIZE STREQUAL "thread")
   target_compile_options(talus_compile INTERFACE -fsanitize=thread -Wno-tsan -fno-omit-frame-pointer)
   target_link_options(talus_compile INTERFACE -fsanitize=thread)
-endif()
-
-if(TALUS_TIDY)
-  find_program(TALUS_CLANG_TIDY NAMES clang-tidy-14 clang-tidy REQUIRED)
-  # clang 14 reads what g++ 12 compiles (std::expected, coroutines) with these.
-  file(STRINGS "${PROJECT_SOURCE_DIR}/tests/tidy/arguments" arguments)
-  set(CMAKE_CXX_CLANG_TIDY "${TALUS_CLANG_TIDY}" --quiet ${arguments})
 endif()

@@ -24,12 +24,12 @@ namespace talus::server {
 
 namespace {
 
-constexpr std::size_t kReadBytes = 4096;
+constexpr std::size_t kHeadReadBytes = 4096;
 /// A standing place looks at thousands of columns, a thousand points at four each.
 constexpr double kQueryCostS = 0.005;
 /// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
 /// connection and take the answer from under the peer.
-constexpr double kLingerS = 2;
+constexpr double kAnswerLingerS = 2;
 constexpr std::size_t kLingerBytes = 64 * 1024;
 /// A peer that has closed its side is taken for gone when its answer takes longer than this.
 constexpr double kHalfClosedS = 1;
@@ -134,7 +134,7 @@ Awaitable<void> HttpConnection::run() {
 
 Awaitable<bool> HttpConnection::read_more() {
   // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
-  if (input_.size() < input_size_ + kReadBytes) input_.resize(input_size_ + kReadBytes);
+  if (input_.size() < input_size_ + kHeadReadBytes) input_.resize(input_size_ + kHeadReadBytes);
   const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
   const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
   if (error) co_return false;
@@ -335,8 +335,8 @@ Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buff
 Awaitable<void> HttpConnection::linger() {
   asio::error_code ignored;
   socket_.shutdown(Socket::shutdown_send, ignored);
-  set_deadline(kLingerS, Count::kEnd);
-  std::array<char, kReadBytes> dropped;
+  set_deadline(kAnswerLingerS, Count::kEnd);
+  std::array<char, kHeadReadBytes> dropped;
   for (std::size_t total = 0; total < kLingerBytes;) {
     const asio::mutable_buffer into(dropped.data(), dropped.size());
     const auto [error, got] = co_await socket_.async_read_some(into, kAwait);

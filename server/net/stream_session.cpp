@@ -25,8 +25,8 @@ using protocol::RefusedReason;
 
 /// What is read at once: several of a viewer's messages. Each session keeps so much for as long as it lasts, so a
 /// longer message is put together from several reads.
-constexpr std::size_t kReadBytes = 1024;
-constexpr double kLingerS = 2;
+constexpr std::size_t kStreamReadBytes = 1024;
+constexpr double kByeLingerS = 2;
 constexpr double kMessageBytesPerToken = 4096;
 
 CloseCode close_code(ByeReason reason) {
@@ -97,7 +97,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   std::unique_ptr<Framing> framing_;
   std::optional<std::size_t> world_;
   std::vector<std::byte> received_;  ///< behind the handshake, until the first read
-  std::array<std::byte, kReadBytes> inbox_;
+  std::array<std::byte, kStreamReadBytes> inbox_;
 
   Phase phase_ = Phase::kHello;
   bool is_ended_ = false;
@@ -270,7 +270,7 @@ void StreamSession::begin_closing(CloseCode code, std::string_view reason) {
   phase_ = Phase::kClosing;
   if (feed_) feed_->close();
   writer_.drop_bulk();
-  linger_until_ = net_.clock.now() + seconds(kLingerS);
+  linger_until_ = net_.clock.now() + seconds(kByeLingerS);
   writer_.ring();
 }
 
