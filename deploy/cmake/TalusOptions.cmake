@@ -24,8 +24,13 @@ target_compile_options(talus_compile INTERFACE
   -ffp-contract=off
   # Nothing reads errno after a square root; without this each is a call.
   -fno-math-errno)
-# SIMD targets of every kernel: the scalar fallback, SSE4, AVX2 and AVX-512, chosen at run time; SSSE3 is older than any host.
-target_compile_definitions(talus_compile INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+# SIMD targets of every kernel: the scalar fallback, SSE4, AVX2 and AVX-512, chosen at run time; SSSE3 is older than any
+# host. A race does not depend on the target: under the thread sanitizer AVX2 and the fallback stand for all.
+if(TALUS_SANITIZE STREQUAL "thread")
+  target_compile_definitions(talus_compile INTERFACE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3|HWY_AVX3_DL)")
+else()
+  target_compile_definitions(talus_compile INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+endif()
 target_include_directories(talus_compile INTERFACE "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>")
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

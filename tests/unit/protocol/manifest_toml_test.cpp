@@ -43,16 +43,22 @@ TEST(ManifestToml, ReadsNameSeedAndParameters) {
 
 TEST(ManifestToml, GivesBackWhatItFormats) {
   std::mt19937_64 random(20261122);
-  for (int round = 0; round < 50; ++round) {
+  for (int round = 0; round < 8; ++round) {
     Manifest manifest;
     manifest.name = "w-" + std::to_string(round);
     manifest.seed = round == 0 ? std::numeric_limits<std::uint64_t>::max() : random();
     const auto parameters = manifest_parameters();
+    std::size_t changed = 0;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (parameters[i].whole || parameters[i].name.starts_with("chunk.")) continue;
+      if (parameters[i].whole) continue;
+      const double before = manifest.values[i];
       manifest.values[i] = std::uniform_real_distribution<double>(parameters[i].low, parameters[i].high)(random);
+      // What contradicts the others, as a least value above its largest does, is not taken.
+      const bool is_sound = manifest_faults(manifest).empty();
+      if (!is_sound) manifest.values[i] = before;
+      if (is_sound) ++changed;
     }
-    if (!manifest_faults(manifest).empty()) continue;
+    EXPECT_GT(changed, parameters.size() / 2);
     const auto again = parse_manifest(format_manifest(manifest), "again.toml");
     ASSERT_TRUE(again) << describe(again.error().front());
     EXPECT_EQ(*again, manifest);
