@@ -60,7 +60,7 @@ async function viewers(counts = '1,10,50,100,250,500', seconds = '30') {
 
 async function scanner(seconds = '40') {
   const scenario = join(root, 'client_sample/load/scenarios/scanner.toml');
-  console.log('scanners  cached p50/p99 ms  hit ratio of the fetcher  hits  built  scanned');
+  console.log('scanners  cached p50/p99 ms (requests)  first p50/p99 ms  chunks found in memory, built, scanned; faults');
   const server = await startServer(['--log-level', 'warning']);
   try {
     // The same place, so the second pair of runs finds everything that the first has left in the cache.
