@@ -32,7 +32,9 @@ Exit codes:
   4 manifest with faults   5 fly: a viewer failed or its view was never complete; load: faults; pregen: time was up)";
 
 void add_server(CLI::App& app, ServerOptions& server) {
-  app.add_option("--server", server.url, "URL of the server; fly also takes tcp://HOST:PORT")->capture_default_str();
+  app.add_option("--server", server.url, "URL of the server: http or https; fly also takes tcp:// and tls://HOST:PORT")
+      ->capture_default_str();
+  app.add_option("--ca", server.ca_file, "PEM file of the authorities to trust, instead of the system's");
   app.add_option("--world", server.world, "name of the world")
       ->capture_default_str()
       ->check([](const std::string& name) {

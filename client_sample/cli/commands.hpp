@@ -16,6 +16,7 @@ namespace talus::cli {
 struct ServerOptions {
   std::string url = "http://127.0.0.1:8080";
   std::string world = "default";
+  std::string ca_file;  ///< PEM of the authorities to trust; empty: the system's
 };
 
 struct GetOptions {

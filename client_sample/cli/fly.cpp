@@ -10,6 +10,7 @@
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/flight.hpp"
+#include "client_sample/cli/reach_server.hpp"
 #include "client_sample/cli/text.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
@@ -193,11 +194,8 @@ double fly_until_done(client::Loop& loop, Flights& flights, const FlyOptions& op
 }  // namespace
 
 ExitCode fly(const FlyOptions& options) {
-  const auto server = client::parse_server_url(options.server.url);
-  if (!server) {
-    fmt::print(stderr, "talus: {}\n", server.error().message);
-    return kUsage;
-  }
+  const auto server = reach_server(options.server);
+  if (!server) return server.error();
   const auto path = path_of(options, *server);
   if (!path) return kUsage;
   std::signal(SIGINT, [](int) { interrupted = 1; });

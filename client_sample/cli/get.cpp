@@ -8,6 +8,7 @@
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
 #include "client_sample/cli/mesh_file.hpp"
+#include "client_sample/cli/reach_server.hpp"
 #include "client_sample/cli/text.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
@@ -100,11 +101,8 @@ std::optional<HttpAnswer> fetch(const client::ServerAddress& server, const std::
 }
 
 ExitCode get_remote(const GetOptions& options, const ChunkKey& key) {
-  const auto server = client::parse_server_url(options.server.url);
-  if (!server) {
-    fmt::print(stderr, "talus: {}\n", server.error().message);
-    return kUsage;
-  }
+  const auto server = reach_server(options.server);
+  if (!server) return server.error();
   const std::string world = "/v1/worlds/" + options.server.world;
   const std::string_view extension = extension_of(options.output);
   const bool is_stored_as_sent = kServedExtensions.contains(extension);

@@ -2,17 +2,15 @@
 #include <fmt/format.h>
 
 #include "client_sample/cli/commands.hpp"
+#include "client_sample/cli/reach_server.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
 
 namespace talus::cli {
 
 ExitCode info(const InfoOptions& options) {
-  const auto server = client::parse_server_url(options.server.url);
-  if (!server) {
-    fmt::print(stderr, "talus: {}\n", server.error().message);
-    return kUsage;
-  }
+  const auto server = reach_server(options.server);
+  if (!server) return server.error();
   const auto answer = client::http_get(*server, "/v1/worlds/" + options.server.world);
   if (!answer) {
     fmt::print(stderr, "talus: {}; is talusd running? Start it with `talusd`, or name it with --server\n",

@@ -5,7 +5,7 @@
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
-#include "client_sample/library/server_address.hpp"
+#include "client_sample/cli/reach_server.hpp"
 #include "client_sample/load/run.hpp"
 
 namespace talus::cli {
@@ -13,12 +13,12 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-/// Says what is wrong with a URL.
-std::optional<client::ServerAddress> address_of(const std::string& url) {
-  const auto address = client::parse_server_url(url);
-  if (address) return *address;
-  fmt::print(stderr, "talus: {}\n", address.error().message);
-  return std::nullopt;
+/// One of the server's doors, reached as the options say; what is wrong with the URL has been said.
+std::optional<client::ServerAddress> address_of(const LoadOptions& options, const std::string& url) {
+  ServerOptions door = options.server;
+  door.url = url;
+  const auto address = reach_server(door);
+  return address ? std::optional(*address) : std::nullopt;
 }
 
 std::expected<load::Scenario, ExitCode> scenario_of(const LoadOptions& options) {
@@ -47,12 +47,12 @@ std::expected<load::Scenario, ExitCode> scenario_of(const LoadOptions& options) 
 ExitCode load(const LoadOptions& options) {
   const auto scenario = scenario_of(options);
   if (!scenario) return scenario.error();
-  const auto http = address_of(options.server.url);
-  const auto tcp = address_of(options.tcp);
+  const auto http = address_of(options, options.server.url);
+  const auto tcp = address_of(options, options.tcp);
   if (!http || !tcp) return kUsage;
   load::RunOptions run{*http, *tcp, std::nullopt, options.server.world, nullptr, nullptr};
   if (!options.metrics.empty()) {
-    run.admin = address_of(options.metrics);
+    run.admin = address_of(options, options.metrics);
     if (!run.admin) return kUsage;
   }
   std::signal(SIGINT, [](int) { interrupted = 1; });

@@ -6,12 +6,12 @@
 #include <utility>
 #include <variant>
 
-#include <asio/connect.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/write.hpp>
 
+#include "client_sample/library/client_socket.hpp"
 #include "client_sample/library/handshake.hpp"
 #include "client_sample/library/length_frames.hpp"
 #include "client_sample/library/websocket_frames.hpp"
@@ -39,10 +39,10 @@ void Loop::run_for(std::chrono::milliseconds time) {
 class Connection::State : public std::enable_shared_from_this<State> {
  public:
   State(asio::io_context& context, ServerAddress server, std::string target, Handlers handlers)
-      : resolver_(context),
-        socket_(context),
+      : server_(std::move(server)),
+        resolver_(context),
+        socket_(context, server_),
         deadline_(context),
-        server_(std::move(server)),
         target_(std::move(target)),
         handlers_(std::move(handlers)),
         random_(std::random_device{}()) {
@@ -85,7 +85,7 @@ class Connection::State : public std::enable_shared_from_this<State> {
     if (is_over_ || is_stalled_) return;
     is_stalled_ = true;
     deadline_.cancel();
-    socket_.async_wait(tcp::socket::wait_error, [self = shared_from_this()](const asio::error_code&) {
+    socket_.async_wait_cut([self = shared_from_this()](const asio::error_code&) {
       if (!self->is_over_) self->end({ErrorCode::kConnect, "the server cut the connection that did not read"});
     });
   }
@@ -105,8 +105,7 @@ class Connection::State : public std::enable_shared_from_this<State> {
     handlers_ = {};
     resolver_.cancel();
     deadline_.cancel();
-    asio::error_code ignored;
-    socket_.close(ignored);
+    socket_.close();
   }
 
  private:
@@ -115,22 +114,19 @@ class Connection::State : public std::enable_shared_from_this<State> {
   /// On plain TCP the end of what we say is the end of our half of the stream.
   void end_sending() {
     if (!outbox_.empty()) return;
-    asio::error_code ignored;
-    socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    socket_.end_sending();
   }
 
   void connect(const tcp::resolver::results_type& found) {
-    asio::async_connect(
-        socket_, found, [self = shared_from_this()](const asio::error_code& error, const tcp::endpoint&) {
-          if (self->is_over_) return;
-          if (error) {
-            return self->end(
-                {ErrorCode::kConnect, "no connection to " + self->server_.authority() + " (" + error.message() + ")"});
-          }
-          asio::error_code ignored;
-          self->socket_.set_option(tcp::no_delay(true), ignored);
-          self->is_tcp() ? self->begin() : self->shake_hands();
-        });
+    socket_.async_open(found, [self = shared_from_this()](const asio::error_code& error) {
+      if (self->is_over_) return;
+      if (error) {
+        return self->end(
+            {ErrorCode::kConnect, "no connection to " + self->server_.authority() + " (" + error.message() + ")"});
+      }
+      self->socket_.set_no_delay();
+      self->is_tcp() ? self->begin() : self->shake_hands();
+    });
   }
 
   /// Messages may come and go.
@@ -230,10 +226,10 @@ class Connection::State : public std::enable_shared_from_this<State> {
     });
   }
 
-  tcp::resolver resolver_;
-  tcp::socket socket_;
-  asio::steady_timer deadline_;
   const ServerAddress server_;
+  tcp::resolver resolver_;
+  ClientSocket socket_;
+  asio::steady_timer deadline_;
   const std::string target_;
   Handlers handlers_;
   std::mt19937_64

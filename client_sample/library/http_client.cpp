@@ -3,12 +3,12 @@
 #include <array>
 #include <utility>
 
-#include <asio/connect.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/write.hpp>
 
+#include "client_sample/library/client_socket.hpp"
 #include "core/base/check.hpp"
 
 namespace talus::client {
@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 class HttpClient::State : public std::enable_shared_from_this<State> {
  public:
   State(asio::io_context& context, ServerAddress server)
-      : resolver_(context), socket_(context), deadline_(context), server_(std::move(server)) {}
+      : server_(std::move(server)), resolver_(context), socket_(context, server_), deadline_(context) {}
 
   void get(const std::string& target, Done done) {
     TALUS_CHECK(!done_);
@@ -46,8 +46,7 @@ class HttpClient::State : public std::enable_shared_from_this<State> {
     is_connected_ = false;
     resolver_.cancel();
     deadline_.cancel();
-    asio::error_code ignored;
-    socket_.close(ignored);
+    socket_.close();
     reader_ = std::make_unique<HttpReader>();
   }
 
@@ -79,13 +78,12 @@ class HttpClient::State : public std::enable_shared_from_this<State> {
   }
 
   void connect(const tcp::resolver::results_type& found) {
-    asio::async_connect(socket_, found, still([](State& self, const asio::error_code& error, const tcp::endpoint&) {
-                          if (error) return self.fail_with(error);
-                          asio::error_code ignored;
-                          self.socket_.set_option(tcp::no_delay(true), ignored);
-                          self.is_connected_ = true;
-                          self.write();
-                        }));
+    socket_.async_open(found, still([](State& self, const asio::error_code& error) {
+                         if (error) return self.fail_with(error);
+                         self.socket_.set_no_delay();
+                         self.is_connected_ = true;
+                         self.write();
+                       }));
   }
 
   void write() {
@@ -151,10 +149,10 @@ class HttpClient::State : public std::enable_shared_from_this<State> {
     if (done) done(std::move(outcome));
   }
 
-  tcp::resolver resolver_;
-  tcp::socket socket_;
-  asio::steady_timer deadline_;
   const ServerAddress server_;
+  tcp::resolver resolver_;
+  ClientSocket socket_;
+  asio::steady_timer deadline_;
   std::string request_;
   Done done_;
   std::unique_ptr<HttpReader> reader_ = std::make_unique<HttpReader>();

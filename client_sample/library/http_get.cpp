@@ -4,10 +4,11 @@
 #include <optional>
 #include <span>
 
-#include <asio/connect.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/write.hpp>
+
+#include "client_sample/library/client_socket.hpp"
 
 namespace talus::client {
 namespace {
@@ -18,7 +19,7 @@ using asio::ip::tcp;
 class Exchange {
  public:
   Exchange(const ServerAddress& server, std::chrono::milliseconds timeout)
-      : server_(server), until_(std::chrono::steady_clock::now() + timeout), socket_(context_) {}
+      : server_(server), until_(std::chrono::steady_clock::now() + timeout), socket_(context_, server) {}
 
   std::expected<HttpAnswer, ClientError> get(std::string_view target) {
     if (auto error = connect()) return std::unexpected(*error);
@@ -42,7 +43,7 @@ class Exchange {
     });
     if (!wait(error)) return ClientError{ErrorCode::kResolve, "no address for " + server_.host};
     error = asio::error::would_block;
-    asio::async_connect(socket_, found, [&](const asio::error_code& e, const tcp::endpoint&) { error = e; });
+    socket_.async_open(found, [&](const asio::error_code& e) { error = e; });
     if (!wait(error)) return failed(error);
     return std::nullopt;
   }
@@ -79,8 +80,7 @@ class Exchange {
     while (error == asio::error::would_block && context_.run_one_until(until_) > 0) {
     }
     if (error != asio::error::would_block) return !error;
-    asio::error_code ignored;
-    socket_.close(ignored);
+    socket_.close();
     context_.stop();
     return false;
   }
@@ -94,7 +94,7 @@ class Exchange {
   const ServerAddress& server_;
   std::chrono::steady_clock::time_point until_;
   asio::io_context context_{1};
-  tcp::socket socket_;
+  ClientSocket socket_;
 };
 
 }  // namespace

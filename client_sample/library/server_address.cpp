@@ -1,13 +1,26 @@
 #include "client_sample/library/server_address.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace talus::client {
 namespace {
 
-constexpr std::string_view kHttp = "http://";
-constexpr std::string_view kTcp = "tcp://";
+struct Scheme {
+  std::string_view prefix;
+  std::string_view port;  ///< when the URL names none
+  Carrier carrier;
+  bool is_secure;
+};
+constexpr std::array<Scheme, 6> kSchemes{{
+    {"http://", "80", Carrier::kWebSocket, false},
+    {"ws://", "80", Carrier::kWebSocket, false},
+    {"https://", "443", Carrier::kWebSocket, true},
+    {"wss://", "443", Carrier::kWebSocket, true},
+    {"tcp://", "8081", Carrier::kTcp, false},
+    {"tls://", "8081", Carrier::kTcp, true},
+}};
 
 std::unexpected<ClientError> unusable(std::string_view url, std::string_view why) {
   return std::unexpected(ClientError{
@@ -50,15 +63,16 @@ std::string ServerAddress::authority() const {
 }
 
 std::expected<ServerAddress, ClientError> parse_server_url(std::string_view url) {
-  if (url.starts_with("https://")) return unusable(url, "is https, which this client does not speak");
-  const bool is_tcp = url.starts_with(kTcp);
-  if (!is_tcp && !url.starts_with(kHttp)) return unusable(url, "begins with neither http:// nor tcp://");
+  const auto scheme = std::ranges::find_if(kSchemes, [&](const Scheme& one) { return url.starts_with(one.prefix); });
+  if (scheme == kSchemes.end()) return unusable(url, "begins with none of http:// https:// tcp:// tls://");
+  const bool is_tcp = scheme->carrier == Carrier::kTcp;
   if (!std::ranges::all_of(url, is_printable)) return unusable(url, "holds a blank or a control character");
-  std::string_view rest = url.substr(is_tcp ? kTcp.size() : kHttp.size());
+  std::string_view rest = url.substr(scheme->prefix.size());
   if (rest.find_first_of("?#@") != std::string_view::npos) return unusable(url, "has a query, fragment or user");
 
   ServerAddress out;
-  if (is_tcp) out.carrier = Carrier::kTcp;
+  out.carrier = scheme->carrier;
+  out.is_secure = scheme->is_secure;
   const std::size_t slash = rest.find('/');
   if (slash != std::string_view::npos) {
     out.prefix = rest.substr(slash);
@@ -66,7 +80,7 @@ std::expected<ServerAddress, ClientError> parse_server_url(std::string_view url)
     if (is_tcp && !out.prefix.empty()) return unusable(url, "has a path, which tcp has not");
     rest = rest.substr(0, slash);
   }
-  std::string_view port = is_tcp ? "8081" : "80";
+  std::string_view port = scheme->port;
   const std::size_t bracket = rest.find(']');
   const std::size_t colon = rest.find(':', bracket == std::string_view::npos ? 0 : bracket);
   if (colon != std::string_view::npos) {

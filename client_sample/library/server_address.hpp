@@ -21,13 +21,15 @@ struct ServerAddress {
   std::uint16_t port = 8080;
   std::string prefix;  ///< path before /v1, without a slash at its end; none with kTcp
   Carrier carrier = Carrier::kWebSocket;
+  bool is_secure = false;  ///< TLS
+  std::string ca_file{};   ///< PEM of the authorities to trust; empty: the system's
 
   /// "host:port" as the Host field has it; IPv6 in brackets.
   std::string authority() const;
 };
 
-/// "http://host[:port][/prefix]" (port 80) or "tcp://host[:port]" (port 8081, the server's --tcp-listen). https is not
-/// spoken: put a proxy on the client's side or use a browser.
+/// "http://host[:port][/prefix]" (or ws; port 80), "https://..." (or wss; 443), "tcp://host[:port]" or "tls://..."
+/// (8081, the server's --tcp-listen).
 std::expected<ServerAddress, ClientError> parse_server_url(std::string_view url);
 
 }  // namespace talus::client

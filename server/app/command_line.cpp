@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "server/app/policy.hpp"
 #include "server/app/world_files.hpp"
 
 namespace talus::server {
@@ -22,7 +23,8 @@ constexpr const char* kFooter =
     "  talusd --viewer client_sample/web/dist          with the browser viewer at http://127.0.0.1:8080/\n"
     "  talusd --world alps.toml --listen 0.0.0.0:8080  a world of your own, for everybody\n"
     "  talusd --print-config > talusd.toml             every setting, to be edited and given to --config\n"
-    "\nWhen ready it prints one line of JSON on standard output; logs go to standard error. SIGTERM ends it cleanly.";
+    "\nWhen ready it prints one line of JSON on standard output; logs go to standard error. SIGTERM ends it cleanly, "
+    "SIGHUP reads settings and certificates again.";
 
 /// Faults, one a line; empty when all is well.
 std::string apply_config(Settings& settings, const std::string& path) {
@@ -132,6 +134,8 @@ std::variant<Serve, PrintAndEnd> parse_command_line(int argc, const char* const*
   if (!is_check) return Serve{std::move(settings)};
   const auto worlds = load_worlds(settings.world);
   if (!worlds) return PrintAndEnd{worlds.error(), 2};
+  const auto policy = make_policy(settings);
+  if (!policy) return PrintAndEnd{policy.error(), 2};
   return PrintAndEnd{"the configuration is good\n", 0};
 }
 

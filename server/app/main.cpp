@@ -29,12 +29,24 @@ void tame_allocator() {
   mallopt(M_ARENA_MAX, kArenas);
 }
 
-int serve(const talus::server::Settings& settings) {
+using talus::server::Serve;
+
+/// The command line and its file once more, through the same checks as at the start; what is wrong changes nothing.
+void reload(talus::server::Server& server, int argc, const char* const* argv) {
+  const auto asked = talus::server::parse_command_line(argc, argv);
+  if (const auto* serve = std::get_if<Serve>(&asked)) {
+    server.reload(serve->settings);
+  } else {
+    server.refuse_reload(std::get<talus::server::PrintAndEnd>(asked).text);
+  }
+}
+
+int serve(const talus::server::Settings& settings, int argc, const char* const* argv) {
   std::counting_semaphore<> signals{0};
-  std::atomic<int> received{0};
-  const auto on_signal = [&] {
+  std::atomic<bool> is_stopping{false};
+  const auto on_signal = [&](talus::server::Signal signal) {
     // Who asks twice does not want to wait for the drain.
-    if (received.fetch_add(1) > 0) std::_Exit(EXIT_FAILURE);
+    if (signal == talus::server::Signal::kStop && is_stopping.exchange(true)) std::_Exit(EXIT_FAILURE);
     signals.release();
   };
   auto server = talus::server::Server::start(settings, on_signal);
@@ -44,7 +56,7 @@ int serve(const talus::server::Settings& settings) {
   }
   std::printf("%s\n", (*server)->ready_line().c_str());
   std::fflush(stdout);
-  signals.acquire();
+  for (signals.acquire(); !is_stopping; signals.acquire()) reload(**server, argc, argv);
   (*server)->stop();
   return EXIT_SUCCESS;
 }
@@ -59,5 +71,5 @@ int main(int argc, char** argv) {
     std::fputs(print->text.c_str(), print->status == 0 ? stdout : stderr);
     return print->status;
   }
-  return serve(std::get<talus::server::Serve>(asked).settings);
+  return serve(std::get<Serve>(asked).settings, argc, argv);
 }

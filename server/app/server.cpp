@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/app/policy.hpp"
 #include "server/app/world_files.hpp"
-#include "server/net/server.hpp"
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
 #include "server/observe/process_readings.hpp"
@@ -45,7 +45,7 @@ std::expected<StaticFiles, std::string> load_viewer(const std::string& folder) {
 /// In order of making; destroyed the other way round. The pool stops before the service its jobs belong to, the network
 /// before both.
 struct Server::Parts {
-  Parts(Settings with, Worlds hosted, StaticFiles viewer)
+  Parts(Settings with, Worlds hosted, StaticFiles viewer, PolicyRef policy)
       : settings(std::move(with)),
         worlds(std::move(hosted)),
         files(std::move(viewer)),
@@ -54,7 +54,8 @@ struct Server::Parts {
         pool({worker_threads(settings), settings.cold_queue}),
         builder(worlds, clock, metrics, pool.threads()),
         chunks(cache, stored, pool, builder, clock, metrics),
-        net{worlds, files, settings.limits, clock, chunks, pool, metrics, worlds_json(worlds), {}, {}, {}, {}, {}},
+        net{worlds, files, clock, chunks, pool, metrics, worlds_json(worlds), PolicySlot(std::move(policy)),
+            {},     {},    {},    {},     {}},
         network(net, network_threads(settings)) {}
 
   Settings settings;
@@ -76,6 +77,7 @@ struct Server::Parts {
   bool is_stopped = false;
 
   std::expected<void, std::string> open_disk();
+  bool speaks_tls(std::string_view listener) const;
   std::expected<void, std::string> listen();
   void add_readings();
   void write_ready_line();
@@ -89,20 +91,25 @@ std::expected<void, std::string> Server::Parts::open_disk() {
   return {};
 }
 
+bool Server::Parts::speaks_tls(std::string_view listener) const {
+  const auto& on = settings.tls_on;
+  return !settings.tls_certificate.empty() && std::find(on.begin(), on.end(), listener) != on.end();
+}
+
 std::expected<void, std::string> Server::Parts::listen() {
-  const auto listen_on = [&](Listen kind, const std::string& text,
+  const auto listen_on = [&](Listen kind, std::string_view key, const std::string& text,
                              std::string& bound) -> std::expected<void, std::string> {
     if (text == "off") return {};
     const auto endpoint = parse_endpoint(text);
     if (!endpoint) return std::unexpected(text + ": " + endpoint.error());
-    auto address = network.listen(kind, *endpoint);
+    auto address = network.listen(kind, *endpoint, speaks_tls(key));
     if (!address) return std::unexpected(address.error());
     bound = std::move(*address);
     return {};
   };
-  if (auto done = listen_on(Listen::kHttp, settings.listen, http_address); !done) return done;
-  if (auto done = listen_on(Listen::kTcp, settings.tcp_listen, tcp_address); !done) return done;
-  return listen_on(Listen::kAdmin, settings.admin_listen, admin_address);
+  if (auto done = listen_on(Listen::kHttp, "listen", settings.listen, http_address); !done) return done;
+  if (auto done = listen_on(Listen::kTcp, "tcp_listen", settings.tcp_listen, tcp_address); !done) return done;
+  return listen_on(Listen::kAdmin, "admin_listen", settings.admin_listen, admin_address);
 }
 
 void Server::Parts::add_readings() {
@@ -149,7 +156,12 @@ void Server::Parts::add_readings() {
                 [this] { return static_cast<double>(pool.failed()); });
   gauge("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });
   gauge("talus_connections_max", "Connections that may be open",
-        [this] { return static_cast<double>(settings.limits.connections); });
+        [this] { return static_cast<double>(net.policy.load()->limits.connections); });
+  gauge("talus_tls_certificate_expires_seconds", "When the certificate ends, seconds since 1970; 0 without TLS",
+        [this] {
+          const PolicyRef policy = net.policy.load();
+          return policy->tls == nullptr ? 0.0 : static_cast<double>(policy->tls->expires_unix_s());
+        });
   gauge("talus_sessions", "Streaming sessions open",
         [this] { return static_cast<double>(net.sessions.load(std::memory_order_relaxed)); });
   gauge("talus_send_queue_bytes", "Frames waiting in all streams, behind what is being written",
@@ -160,7 +172,13 @@ void Server::Parts::add_readings() {
 void Server::Parts::write_ready_line() {
   const auto address = [](const std::string& text) { return text.empty() ? std::string("null") : json_string(text); };
   ready_line = "{\"ready\":true,\"http\":" + address(http_address) + ",\"tcp\":" + address(tcp_address) +
-               ",\"admin\":" + address(admin_address) + ",\"worlds\":[";
+               ",\"admin\":" + address(admin_address) + ",\"tls\":[";
+  for (const std::string_view name : {"listen", "tcp_listen", "admin_listen"}) {
+    if (!speaks_tls(name)) continue;
+    if (ready_line.back() != '[') ready_line += ',';
+    append_json_string(ready_line, name);
+  }
+  ready_line += "],\"worlds\":[";
   for (const auto& world : worlds) {
     if (ready_line.back() != '[') ready_line += ',';
     append_json_string(ready_line, world->name());
@@ -169,13 +187,15 @@ void Server::Parts::write_ready_line() {
 }
 
 std::expected<std::unique_ptr<Server>, std::string> Server::start(const Settings& settings,
-                                                                  std::function<void()> on_signal) {
+                                                                  std::function<void(Signal)> on_signal) {
   set_log_level(log_level(settings.log_level).value_or(LogLevel::kInfo));
   auto worlds = load_worlds(settings.world);
   if (!worlds) return std::unexpected(worlds.error());
   auto files = load_viewer(settings.viewer);
   if (!files) return std::unexpected(files.error());
-  auto parts = std::make_unique<Parts>(settings, std::move(*worlds), std::move(*files));
+  auto policy = make_policy(settings);
+  if (!policy) return std::unexpected(policy.error());
+  auto parts = std::make_unique<Parts>(settings, std::move(*worlds), std::move(*files), std::move(*policy));
   if (const auto opened = parts->open_disk(); !opened) return std::unexpected(opened.error() + "\n");
   if (const auto listening = parts->listen(); !listening) return std::unexpected(listening.error() + "\n");
   parts->add_readings();
@@ -212,6 +232,35 @@ const std::string& Server::admin_address() const {
 }
 const Metrics& Server::metrics() const {
   return parts_->metrics;
+}
+
+std::expected<void, std::string> Server::reload(const Settings& settings) {
+  auto policy = make_policy(settings);
+  Settings& old = parts_->settings;
+  if (policy && settings.tls_certificate.empty() != old.tls_certificate.empty()) {
+    policy = std::unexpected("tls_certificate: a listener takes up or gives up TLS only at a start\n");
+  }
+  if (!policy) {
+    refuse_reload(policy.error());
+    return std::unexpected(policy.error());
+  }
+  std::string waiting;
+  for (const std::string_view key : fixed_differences(old, settings)) {
+    waiting += (waiting.empty() ? "" : ", ") + std::string(key);
+  }
+  if (!waiting.empty()) log(LogLevel::kWarning, "settings that wait for a restart", {{"keys", waiting}});
+  parts_->net.policy.store(std::move(*policy));
+  set_log_level(log_level(settings.log_level).value_or(LogLevel::kInfo));
+  old.log_level = settings.log_level;
+  old.drain_s = settings.drain_s;
+  parts_->metrics.add(Count::kReloads);
+  log(LogLevel::kInfo, "settings reloaded");
+  return {};
+}
+
+void Server::refuse_reload(std::string_view why) {
+  parts_->metrics.add(Count::kReloadsRefused);
+  log(LogLevel::kError, "settings not reloaded", {{"fault", why}});
 }
 
 void Server::stop() {

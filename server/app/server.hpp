@@ -5,18 +5,20 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "server/app/settings.hpp"
+#include "server/net/server.hpp"
 #include "server/observe/metrics.hpp"
 
 namespace talus::server {
 
 class Server {
  public:
-  /// Loads worlds and viewer, makes the pool, listens, runs. `on_signal` is called on a network thread for every SIGINT
-  /// and SIGTERM. The error is for the operator, whole sentences, one a line.
+  /// Loads worlds and viewer, makes the pool, listens, runs. `on_signal` is called on a network thread for every
+  /// signal. The error is for the operator, whole sentences, one a line.
   static std::expected<std::unique_ptr<Server>, std::string> start(
-      const Settings& settings, std::function<void()> on_signal = [] {});
+      const Settings& settings, std::function<void(Signal)> on_signal = [](Signal) {});
   /// Stops at once, unless `stop` was called.
   ~Server();
   Server(const Server&) = delete;
@@ -30,6 +32,11 @@ class Server {
   const std::string& admin_address() const;
   const Metrics& metrics() const;
 
+  /// Takes over what may change while the server runs, for connections to come, and says so in the log. On an error
+  /// everything stays as it was. On the thread that stops the server.
+  std::expected<void, std::string> reload(const Settings& settings);
+  /// Counts and logs that settings were not taken over.
+  void refuse_reload(std::string_view why);
   /// Refuses the new, lets the old end within `drain_s`, then ends it. Returns when all threads have ended.
   void stop();
 

@@ -34,6 +34,9 @@ const std::array kTable{
   SettingInfo{"listen", &of_settings<&S::listen>, 0, 0, "ADDR:PORT", "Where HTTP and WebSocket are spoken; port 0 takes a free one."},
   SettingInfo{"tcp_listen", &of_settings<&S::tcp_listen>, 0, 0, "ADDR:PORT", "Where the streaming protocol is spoken over plain TCP; off: not at all."},
   SettingInfo{"admin_listen", &of_settings<&S::admin_listen>, 0, 0, "ADDR:PORT", "Where /metrics is; keep it off public networks. off: nowhere."},
+  SettingInfo{"tls_certificate", &of_settings<&S::tls_certificate>, 0, 0, "FILE", "Certificate chain in PEM, leaf first: https and wss instead of http and ws."},
+  SettingInfo{"tls_key", &of_settings<&S::tls_key>, 0, 0, "FILE", "Its private key in PEM, without a password."},
+  SettingInfo{"tls_on", &of_settings<&S::tls_on>, 0, 3, "LISTENER", "Where TLS is spoken when there is a certificate: listen, tcp_listen, admin_listen; repeatable. Without it the first two."},
   SettingInfo{"viewer", &of_settings<&S::viewer>, 0, 0, "DIR", "Folder of the built browser viewer, served at /."},
   SettingInfo{"threads", &of_settings<&S::threads>, 0, 1024, "N", "Threads that make terrain; 0 is one for each processor."},
   SettingInfo{"net_threads", &of_settings<&S::net_threads>, 0, 64, "N", "Threads that talk to peers; 0 is one for every four processors."},
@@ -65,6 +68,15 @@ const std::array kTable{
   SettingInfo{"window_max", &of_limits<&L::window_max>, 2, 256, "N", "Chunks in the making at once for one stream.", true},
 };
 // clang-format on
+
+/// What is built once, at the start.
+constexpr std::array<std::string_view, 12> kFixed{"world",   "listen",      "tcp_listen",     "admin_listen",
+                                                  "threads", "net_threads", "cache_mib",      "disk_cache",
+                                                  "viewer",  "tls_on",      "disk_cache_mib", "cold_queue"};
+
+bool is_fixed(std::string_view key) {
+  return std::find(kFixed.begin(), kFixed.end(), key) != kFixed.end();
+}
 
 std::string range_of(const SettingInfo& info) {
   return fmt::format("allowed {}..{}", protocol::format_number(info.low), protocol::format_number(info.high));
@@ -171,6 +183,14 @@ std::vector<SettingFault> setting_faults(const Settings& settings) {
   check_address("listen", settings.listen, false);
   check_address("tcp_listen", settings.tcp_listen, true);
   check_address("admin_listen", settings.admin_listen, true);
+  if (settings.tls_certificate.empty() != settings.tls_key.empty()) {
+    faults.push_back({settings.tls_key.empty() ? "tls_certificate" : "tls_key",
+                      "a certificate and its key belong together: give tls_certificate and tls_key"});
+  }
+  for (const std::string& name : settings.tls_on) {
+    if (name == "listen" || name == "tcp_listen" || name == "admin_listen") continue;
+    faults.push_back({"tls_on", fmt::format("'{}': expected listen, tcp_listen or admin_listen", name)});
+  }
   if (!log_level(settings.log_level)) {
     faults.push_back(
         {"log_level", fmt::format("'{}': expected debug, info, warning, error or off", settings.log_level)});
@@ -184,13 +204,27 @@ std::vector<SettingFault> setting_faults(const Settings& settings) {
   return faults;
 }
 
+std::vector<std::string_view> fixed_differences(const Settings& a, const Settings& b) {
+  std::vector<std::string_view> out;
+  Settings left = a;
+  Settings right = b;
+  for (const SettingInfo& info : kTable) {
+    const bool is_same = std::visit([&](auto place) { return place(left) == place(right); }, info.place);
+    if (!is_same && is_fixed(info.key)) out.push_back(info.key);
+  }
+  return out;
+}
+
 std::string format_settings(const Settings& settings) {
   Settings copy = settings;
-  std::string out = "# Settings of talusd. Every key has a flag of the same name: cache_mib is --cache-mib.\n";
+  std::string out =
+      "# Settings of talusd. Every key has a flag of the same name: cache_mib is --cache-mib. SIGHUP reads this file "
+      "again;\n"
+      "# what is marked with 'at start' waits for the next one.\n";
   for (const SettingInfo& info : kTable) {
     const bool is_number = info.place.index() >= 2;
-    fmt::format_to(std::back_inserter(out), "\n# {}{}\n{} = ", info.meaning,
-                   is_number ? " (" + range_of(info) + ")" : "", info.key);
+    fmt::format_to(std::back_inserter(out), "\n# {}{}{}\n{} = ", info.meaning,
+                   is_number ? " (" + range_of(info) + ")" : "", is_fixed(info.key) ? " [at start]" : "", info.key);
     std::visit(
         [&](auto place) {
           const auto& value = place(copy);

@@ -26,7 +26,10 @@ struct Settings {
   std::size_t cache_mib = 256;
   std::string disk_cache;  ///< folder; empty: none
   std::size_t disk_cache_mib = 4096;
-  std::string viewer;  ///< folder of the browser viewer; empty: none
+  std::string viewer;                                          ///< folder of the browser viewer; empty: none
+  std::string tls_certificate;                                 ///< PEM file; empty: no TLS
+  std::string tls_key;                                         ///< PEM file
+  std::vector<std::string> tls_on = {"listen", "tcp_listen"};  ///< listeners, when there is a certificate
   std::string log_level = "info";
   double drain_s = 10;
   std::size_t cold_queue = 256;
@@ -64,6 +67,9 @@ struct SettingFault {
   std::string message;
 };
 std::vector<SettingFault> setting_faults(const Settings& settings);
+
+/// Keys of what differs and takes effect only at a start; the others may change while the server runs.
+std::vector<std::string_view> fixed_differences(const Settings& a, const Settings& b);
 
 /// A complete TOML file that gives `settings` back, each key with its meaning and range.
 std::string format_settings(const Settings& settings);

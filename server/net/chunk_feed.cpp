@@ -23,10 +23,11 @@ constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 
 }  // namespace
 
-ChunkFeed::ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes,
-                     bool takes_strips, ClientId client, asio::io_context::executor_type executor,
-                     std::weak_ptr<void> owner)
+ChunkFeed::ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world,
+                     std::uint64_t credit_bytes, bool takes_strips, ClientId client,
+                     asio::io_context::executor_type executor, std::weak_ptr<void> owner)
     : net_(net),
+      limits_(limits),
       writer_(writer),
       world_(world),
       client_(client),
@@ -78,7 +79,7 @@ void ChunkFeed::refresh() {
 
 std::size_t ChunkFeed::window() const {
   const std::size_t sessions = std::max<std::size_t>(1, net_.sessions.load(std::memory_order_relaxed));
-  return std::clamp(kWindowsSum / sessions, kWindowMin, std::max(kWindowMin, net_.limits.window_max));
+  return std::clamp(kWindowsSum / sessions, kWindowMin, std::max(kWindowMin, limits_.window_max));
 }
 
 void ChunkFeed::pump() {
@@ -140,7 +141,7 @@ void ChunkFeed::on_piece(const Piece& piece, const ChunkResult& result) {
 }
 
 void ChunkFeed::offer(const Piece& piece, PayloadRef payload) {
-  if (writer_.bytes() > net_.limits.send_soft_bytes) {
+  if (writer_.bytes() > limits_.send_soft_bytes) {
     net_.metrics.add(Count::kSendShed);
     return viewer_.put_back(piece);
   }

@@ -15,11 +15,11 @@ namespace talus::server {
 
 class ChunkFeed {
  public:
-  /// `net` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way. Counts as a
-  /// session from here to its destruction.
-  /// `client` is whose share of the pool its chunks take.
-  ChunkFeed(NetContext& net, FrameWriter& writer, std::size_t world, std::uint64_t credit_bytes, bool takes_strips,
-            ClientId client, asio::io_context::executor_type executor, std::weak_ptr<void> owner);
+  /// `net`, `limits` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way.
+  /// Counts as a session from here to its destruction. `client` is whose share of the pool its chunks take.
+  ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world,
+            std::uint64_t credit_bytes, bool takes_strips, ClientId client, asio::io_context::executor_type executor,
+            std::weak_ptr<void> owner);
   ~ChunkFeed();
   ChunkFeed(const ChunkFeed&) = delete;
   ChunkFeed& operator=(const ChunkFeed&) = delete;
@@ -41,6 +41,7 @@ class ChunkFeed {
   std::size_t window() const;
 
   NetContext& net_;
+  const NetLimits& limits_;
   FrameWriter& writer_;
   const std::size_t world_;
   const ClientId client_;

@@ -15,12 +15,14 @@ std::size_t ConnectionCensus::AddressHash::operator()(const PeerAddress& address
   return static_cast<std::size_t>(client_of_address(address));
 }
 
-std::pair<ConnectionCensus::Verdict, ConnectionCensus::Place> ConnectionCensus::enter(const PeerAddress& address) {
+std::pair<ConnectionCensus::Verdict, ConnectionCensus::Place> ConnectionCensus::enter(const PeerAddress& address,
+                                                                                      std::size_t all_max,
+                                                                                      std::size_t address_max) {
   const std::lock_guard lock(mutex_);
-  if (all_ >= all_max_) return {Verdict::kTooMany, Place{}};
-  std::size_t& here = by_address_[address];
-  if (here >= address_max_) return {Verdict::kTooManyFromAddress, Place{}};
-  ++here;
+  if (all_ >= all_max) return {Verdict::kTooMany, Place{}};
+  const auto here = by_address_.find(address);
+  if (here != by_address_.end() && here->second >= address_max) return {Verdict::kTooManyFromAddress, Place{}};
+  ++by_address_[address];
   ++all_;
   return {Verdict::kWelcome, Place{this, address}};
 }

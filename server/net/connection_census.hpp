@@ -20,8 +20,6 @@ ClientId client_of_address(const PeerAddress& address);
 
 class ConnectionCensus {
  public:
-  ConnectionCensus(std::size_t all_max, std::size_t address_max) : all_max_(all_max), address_max_(address_max) {}
-
   /// One counted connection; uncounted when it is destroyed. Must not outlive its census.
   class Place {
    public:
@@ -45,7 +43,8 @@ class ConnectionCensus {
   };
 
   enum class Verdict : std::uint8_t { kWelcome, kTooMany, kTooManyFromAddress };
-  std::pair<Verdict, Place> enter(const PeerAddress& address);
+  /// Counts the connection unless that makes more than `all_max`, or more than `address_max` of its address.
+  std::pair<Verdict, Place> enter(const PeerAddress& address, std::size_t all_max, std::size_t address_max);
   std::size_t connections() const;
 
  private:
@@ -54,8 +53,6 @@ class ConnectionCensus {
   };
   void leave(const PeerAddress& address);
 
-  const std::size_t all_max_;
-  const std::size_t address_max_;
   mutable std::mutex mutex_;
   std::size_t all_ = 0;
   std::unordered_map<PeerAddress, std::size_t, AddressHash> by_address_;

@@ -12,8 +12,8 @@ constexpr std::size_t kBatchBytes = 128 * 1024;
 
 }  // namespace
 
-FrameWriter::FrameWriter(NetContext& net, Socket& socket, const Framing& framing)
-    : net_(net), socket_(socket), framing_(framing), bell_(socket.get_executor()) {}
+FrameWriter::FrameWriter(NetContext& net, Channel& channel, const Framing& framing)
+    : net_(net), channel_(channel), framing_(framing), bell_(channel.executor()) {}
 
 FrameWriter::~FrameWriter() {
   net_.queued_bytes.fetch_sub(told_bytes_, std::memory_order_relaxed);
@@ -99,7 +99,7 @@ Awaitable<bool> FrameWriter::write_batch() {
   progress_at_ = start;
   for (std::span<asio::const_buffer> left(buffers_); !left.empty();) {
     asio::error_code error;
-    std::size_t sent = socket_.write_some(left, error);
+    std::size_t sent = channel_.write_some(left, error);
     if (error && error != asio::error::would_block) co_return false;
     if (sent != 0) progress_at_ = net_.clock.now();
     while (!left.empty() && sent >= left.front().size()) {
@@ -108,8 +108,7 @@ Awaitable<bool> FrameWriter::write_batch() {
     }
     if (left.empty()) break;
     left.front() += sent;
-    const auto [wait_error] = co_await socket_.async_wait(Socket::wait_write, kAwait);
-    if (wait_error) co_return false;
+    if (co_await channel_.wait_writable()) co_return false;
   }
   is_writing_ = false;
   batch_.clear();

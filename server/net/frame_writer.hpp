@@ -1,4 +1,4 @@
-// Puts a session's frames onto its socket: two lanes, one gather write for many frames, payloads never copied.
+// Puts a session's frames onto its channel: two lanes, one gather write for many frames, payloads never copied.
 // Owner: one session, on its thread.
 #pragma once
 
@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "protocol/message.hpp"
+#include "server/net/channel.hpp"
 #include "server/net/framing.hpp"
 #include "server/net/net_context.hpp"
 #include "server/net/send_queue.hpp"
-#include "server/net/socket.hpp"
 
 namespace talus::server {
 
 class FrameWriter {
  public:
   /// All must outlive the writer.
-  FrameWriter(NetContext& net, Socket& socket, const Framing& framing);
+  FrameWriter(NetContext& net, Channel& channel, const Framing& framing);
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
@@ -40,7 +40,7 @@ class FrameWriter {
   /// Returns when something was pushed, or `ring` was called.
   Awaitable<void> wait() { return bell_.wait(); }
   void ring() { bell_.ring(); }
-  /// Takes the next frames from the queue and writes them whole. False when the socket has failed.
+  /// Takes the next frames from the queue and writes them whole. False when the channel has failed.
   Awaitable<bool> write_batch();
 
  private:
@@ -50,7 +50,7 @@ class FrameWriter {
   OutFrame payload_frame(const protocol::Message& head, PayloadRef payload) const;
 
   NetContext& net_;
-  Socket& socket_;
+  Channel& channel_;
   const Framing& framing_;
   SendQueue queue_;
   std::size_t told_bytes_ = 0;

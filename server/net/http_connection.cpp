@@ -37,16 +37,18 @@ constexpr double kHalfClosedS = 1;
 /// One connection: reads a head, answers, and again. All on one thread.
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection>, public Swept {
  public:
-  HttpConnection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door)
+  HttpConnection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door)
       : Swept(sweeper),
         net_(net),
-        executor_(socket.get_executor()),
-        socket_(std::move(socket)),
+        executor_(channel.executor()),
+        channel_(std::move(channel)),
         pass_(std::move(pass)),
         door_(door),
-        scanner_(net.limits),
-        bell_(socket_.get_executor()) {
-    set_deadline(net.limits.silent_s, Count::kSilentTimeout);
+        policy_(pass_.policy),
+        limits_(policy_->limits),
+        scanner_(limits_),
+        bell_(executor_) {
+    set_deadline(limits_.silent_s, Count::kSilentTimeout);
   }
 
   Awaitable<void> run();
@@ -79,9 +81,11 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
 
   NetContext& net_;
   const asio::io_context::executor_type executor_;
-  Socket socket_;
+  Channel channel_;
   ConnectionPass pass_;
   const Door door_;
+  const PolicyRef policy_;  ///< outlives the pass, which a stream takes over
+  const NetLimits& limits_;
   HeadScanner scanner_;
   std::vector<char> input_;  ///< [0, input_size_) is received and not answered
   std::size_t input_size_ = 0;
@@ -124,23 +128,23 @@ Awaitable<void> HttpConnection::run() {
     is_idle_ = input_size_ == 0;
     if (is_idle_ && is_draining_) break;
     if (is_idle_) {
-      set_deadline(net_.limits.idle_s, Count::kIdleTimeout);
+      set_deadline(limits_.idle_s, Count::kIdleTimeout);
     } else {
-      set_deadline(net_.limits.head_s, Count::kHeadTimeout);
+      set_deadline(limits_.head_s, Count::kHeadTimeout);
     }
   }
-  close_socket(socket_);
+  channel_.close();
 }
 
 Awaitable<bool> HttpConnection::read_more() {
   // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
   if (input_.size() < input_size_ + kHeadReadBytes) input_.resize(input_size_ + kHeadReadBytes);
   const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
-  const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
+  const auto [error, got] = co_await channel_.read_some(into);
   if (error) co_return false;
   if (input_size_ == 0) {
     is_idle_ = false;
-    set_deadline(net_.limits.head_s, Count::kHeadTimeout);
+    set_deadline(limits_.head_s, Count::kHeadTimeout);
     // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
     std::size_t skipped = 0;
     if (got >= 2 && input_[0] == '\r' && input_[1] == '\n') skipped = 2;
@@ -165,11 +169,11 @@ Awaitable<HttpConnection::Next> HttpConnection::refuse(HttpFault fault) {
 
 Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
   const Instant start = net_.clock.now();
-  const auto request = parse_head(head, net_.limits);
+  const auto request = parse_head(head, limits_);
   if (!request) co_return co_await refuse(request.error());
   is_http_1_0_ = request->is_http_1_0;
   is_keep_alive_ = request->is_keep_alive && !request->has_body && !is_draining_;
-  if (++requests_ >= net_.limits.requests_per_connection && is_keep_alive_) {
+  if (++requests_ >= limits_.requests_per_connection && is_keep_alive_) {
     net_.metrics.add(Count::kRequestsExhausted);
     is_keep_alive_ = false;
   }
@@ -278,7 +282,7 @@ Awaitable<HttpAnswer> HttpConnection::answer_query(std::size_t world, Question q
 }
 
 Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::string_view head, HttpMethod method) {
-  const auto request = parse_head(head, net_.limits);
+  const auto request = parse_head(head, limits_);
   TALUS_CHECK(request.has_value());
   auto handshake = websocket_handshake(*request);
   if (!handshake) {
@@ -294,7 +298,7 @@ Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::
   const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
   start.received.assign(rest.begin(), rest.end());
   deadline_ = Instant::max();
-  start_stream_session(net_, sweeper(), std::move(socket_), std::move(pass_), std::move(start));
+  start_stream_session(net_, sweeper(), std::move(channel_), std::move(pass_), std::move(start));
   co_return Next::kEnd;
 }
 
@@ -316,7 +320,7 @@ Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
 Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buffers) {
   for (;;) {
     asio::error_code error;
-    std::size_t sent = socket_.write_some(buffers, error);
+    std::size_t sent = channel_.write_some(buffers, error);
     if (error && error != asio::error::would_block) co_return false;
     for (asio::const_buffer& buffer : buffers) {
       const std::size_t of_this = std::min(sent, buffer.size());
@@ -324,22 +328,20 @@ Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buff
       sent -= of_this;
     }
     if (buffers[0].size() + buffers[1].size() == 0) break;
-    set_deadline(net_.limits.write_stall_s, Count::kWriteStalled);
-    const auto [wait_error] = co_await socket_.async_wait(Socket::wait_write, kAwait);
-    if (wait_error) co_return false;
+    set_deadline(limits_.write_stall_s, Count::kWriteStalled);
+    if (co_await channel_.wait_writable()) co_return false;
   }
   deadline_ = Instant::max();
   co_return true;
 }
 
 Awaitable<void> HttpConnection::linger() {
-  asio::error_code ignored;
-  socket_.shutdown(Socket::shutdown_send, ignored);
+  channel_.shutdown_send();
   set_deadline(kAnswerLingerS, Count::kEnd);
   std::array<char, kHeadReadBytes> dropped;
   for (std::size_t total = 0; total < kLingerBytes;) {
     const asio::mutable_buffer into(dropped.data(), dropped.size());
-    const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
+    const auto [error, got] = co_await channel_.read_some(into);
     if (error) break;
     total += got;
   }
@@ -353,8 +355,8 @@ void HttpConnection::begin_wait() {
 void HttpConnection::sweep(Instant now) {
   if (is_waiting_) {
     // A ticket is dropped as soon as nobody waits behind this connection.
-    const bool is_gone = now - waiting_since_ > seconds(kHalfClosedS) && is_peer_gone(socket_);
-    if (!is_gone && now - waiting_since_ < seconds(net_.limits.wait_s)) return;
+    const bool is_gone = now - waiting_since_ > seconds(kHalfClosedS) && channel_.is_peer_gone();
+    if (!is_gone && now - waiting_since_ < seconds(limits_.wait_s)) return;
     is_waiting_ = false;
     bell_.ring();
     return;
@@ -363,9 +365,9 @@ void HttpConnection::sweep(Instant now) {
   deadline_ = Instant::max();
   if (deadline_reason_ != Count::kEnd) net_.metrics.add(deadline_reason_);
   if (deadline_reason_ == Count::kWriteStalled) {
-    reset_socket(socket_);
+    channel_.reset();
   } else {
-    close_socket(socket_);
+    channel_.close();
   }
 }
 
@@ -373,20 +375,20 @@ void HttpConnection::drain() {
   if (door_ == Door::kAdmin) return;
   is_draining_ = true;
   is_keep_alive_ = false;
-  if (is_idle_) close_socket(socket_);
+  if (is_idle_) channel_.close();
 }
 
 void HttpConnection::abort() {
   is_waiting_ = false;
-  reset_socket(socket_);
+  channel_.reset();
   bell_.ring();
 }
 
 }  // namespace
 
-void start_http_connection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door) {
-  const auto executor = socket.get_executor();
-  auto connection = std::make_shared<HttpConnection>(net, sweeper, std::move(socket), std::move(pass), door);
+void start_http_connection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door) {
+  const auto executor = channel.executor();
+  auto connection = std::make_shared<HttpConnection>(net, sweeper, std::move(channel), std::move(pass), door);
   HttpConnection& running = *connection;
   asio::co_spawn(executor, running.run(), [connection = std::move(connection), &net](const std::exception_ptr& fault) {
     if (fault != nullptr) net.metrics.add(Count::kConnectionFault);

@@ -1,10 +1,10 @@
 // Starts an HTTP connection on an accepted socket. Asio's types stay out of most of the room's sources.
 #pragma once
 
+#include "server/net/channel.hpp"
 #include "server/net/connection_census.hpp"
 #include "server/net/net_context.hpp"
 #include "server/net/routes.hpp"
-#include "server/net/socket.hpp"
 #include "server/net/sweeper.hpp"
 #include "server/schedule/gate.hpp"
 
@@ -15,9 +15,10 @@ struct ConnectionPass {
   Gate::Pass gate;
   ConnectionCensus::Place place;
   ClientId client = 0;  ///< of its address: what HTTP asks for is shared out by it
+  PolicyRef policy;     ///< as it was when the connection came
 };
 
-/// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `socket`.
-void start_http_connection(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, Door door);
+/// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `channel`.
+void start_http_connection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door);
 
 }  // namespace talus::server

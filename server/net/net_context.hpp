@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "server/net/limits.hpp"
+#include "server/net/net_policy.hpp"
 #include "server/net/static_files.hpp"
 #include "server/observe/metrics.hpp"
 #include "server/schedule/clock.hpp"
@@ -20,12 +20,12 @@ namespace talus::server {
 struct NetContext {
   const Worlds& worlds;
   const StaticFiles& files;
-  const NetLimits& limits;
   const Clock& clock;
   ChunkService& chunks;
   JobPool& pool;
   Metrics& metrics;
   const std::string worlds_json;
+  PolicySlot policy;  ///< of connections to come
 
   Gate connections;                      ///< one pass a connection; empty when the last has ended
   Gate admin_connections;                ///< those of the admin door, which is open until the end

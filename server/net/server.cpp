@@ -53,9 +53,10 @@ struct IoThread {
 };
 
 struct Listener {
-  Listener(Executor executor, Listen listen) : acceptor(executor), kind(listen) {}
+  Listener(Executor executor, Listen listen, bool with_tls) : acceptor(executor), kind(listen), is_tls(with_tls) {}
   Acceptor acceptor;
-  Listen kind;
+  const Listen kind;
+  const bool is_tls;
 };
 
 /// A descriptor kept for the day when there are none: given up to take a connection in, tell it so and end it.
@@ -83,14 +84,13 @@ class SpareDescriptor {
 }  // namespace
 
 struct NetServer::Threads {
-  Threads(NetContext& context, std::size_t count)
-      : net(context), census(context.limits.connections, context.limits.connections_per_address) {
+  Threads(NetContext& context, std::size_t count) : net(context) {
     for (std::size_t i = 0; i < count; ++i) io.push_back(std::make_unique<IoThread>(context.clock));
   }
 
   Executor front() { return io.front()->context.get_executor(); }
   Awaitable<void> accept_loop(Listener* listener);
-  void welcome(Listen kind, Socket socket, IoThread& target);
+  void welcome(const Listener& listener, Socket socket, IoThread& target);
   void wait_for_signal();
   void each_sweeper(void (Sweeper::*act)());
   void close_listeners(bool is_admin);
@@ -101,7 +101,7 @@ struct NetServer::Threads {
   std::vector<std::unique_ptr<IoThread>> io;
   std::vector<std::unique_ptr<Listener>> listeners;
   std::optional<asio::signal_set> signals;
-  std::function<void()> on_signal;
+  std::function<void(Signal)> on_signal;
   std::size_t next = 0;
   bool is_running = false;
 };
@@ -126,9 +126,9 @@ NetServer::~NetServer() {
   stop(0.0);
 }
 
-std::expected<std::string, std::string> NetServer::listen(Listen kind, const Endpoint& endpoint) {
+std::expected<std::string, std::string> NetServer::listen(Listen kind, const Endpoint& endpoint, bool is_tls) {
   const asio::ip::tcp::endpoint wanted(asio::ip::make_address(endpoint.address), endpoint.port);
-  auto listener = std::make_unique<Listener>(threads_->front(), kind);
+  auto listener = std::make_unique<Listener>(threads_->front(), kind, is_tls);
   Acceptor& acceptor = listener->acceptor;
   asio::error_code error;
   acceptor.open(wanted.protocol(), error);
@@ -146,10 +146,10 @@ std::expected<std::string, std::string> NetServer::listen(Listen kind, const End
   return bound;
 }
 
-void NetServer::start(std::function<void()> on_signal) {
+void NetServer::start(std::function<void(Signal)> on_signal) {
   Threads& t = *threads_;
   t.on_signal = std::move(on_signal);
-  t.signals.emplace(t.front(), SIGINT, SIGTERM);
+  t.signals.emplace(t.front(), SIGINT, SIGTERM, SIGHUP);
   t.wait_for_signal();
   for (const auto& listener : t.listeners) {
     asio::co_spawn(t.front(), t.accept_loop(listener.get()), [this](const std::exception_ptr& fault) {
@@ -218,9 +218,9 @@ void NetServer::Threads::close_listeners(bool is_admin) {
 }
 
 void NetServer::Threads::wait_for_signal() {
-  signals->async_wait([this](const asio::error_code& error, int) {
+  signals->async_wait([this](const asio::error_code& error, int number) {
     if (error) return;
-    on_signal();
+    on_signal(number == SIGHUP ? Signal::kReload : Signal::kStop);
     wait_for_signal();
   });
 }
@@ -233,7 +233,7 @@ Awaitable<void> NetServer::Threads::accept_loop(Listener* listener) {
     Socket socket(target.context.get_executor());
     const auto [error] = co_await acceptor.async_accept(socket, kAwait);
     if (!error) {
-      welcome(listener->kind, std::move(socket), target);
+      welcome(*listener, std::move(socket), target);
     } else if (error == asio::error::no_descriptors) {
       net.metrics.add(Count::kConnectionsRefusedDescriptors);
       spare.refuse_one(acceptor.native_handle());
@@ -245,31 +245,35 @@ Awaitable<void> NetServer::Threads::accept_loop(Listener* listener) {
   }
 }
 
-void NetServer::Threads::welcome(Listen kind, Socket socket, IoThread& target) {
+void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThread& target) {
+  const Listen kind = listener.kind;
   asio::error_code error;
   const auto peer = socket.remote_endpoint(error);
   if (error) return;  // gone already
   const PeerAddress address = address_of(peer.address());
-  auto [verdict, place] = census.enter(address);
+  PolicyRef policy = net.policy.load();
+  auto [verdict, place] = census.enter(address, policy->limits.connections, policy->limits.connections_per_address);
   if (verdict != ConnectionCensus::Verdict::kWelcome) {
     net.metrics.add(verdict == ConnectionCensus::Verdict::kTooMany ? Count::kConnectionsRefusedTotal
                                                                    : Count::kConnectionsRefusedAddress);
-    if (kind != Listen::kTcp) socket.write_some(asio::buffer(kFull), error);
+    if (kind != Listen::kTcp && !listener.is_tls) socket.write_some(asio::buffer(kFull), error);
     return;
   }
   ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(), std::move(place),
-                      client_of_address(address)};
+                      client_of_address(address), std::move(policy)};
   if (!pass.gate) return;
   net.metrics.add(Count::kConnectionsAccepted);
   set_socket_options(socket);
-  asio::post(target.context, [this, kind, &target, socket = std::move(socket), pass = std::move(pass)]() mutable {
+  const TlsContext* tls = listener.is_tls ? pass.policy->tls.get() : nullptr;
+  asio::post(target.context, [this, kind, &target, tls, socket = std::move(socket), pass = std::move(pass)]() mutable {
+    Channel channel(std::move(socket), tls, net.metrics);
     if (kind == Listen::kTcp) {
       StreamStart start;
       start.framing = make_tcp_framing(protocol::kInboundMessageBytesMax);
-      start_stream_session(net, target.sweeper, std::move(socket), std::move(pass), std::move(start));
+      start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
     } else {
       const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;
-      start_http_connection(net, target.sweeper, std::move(socket), std::move(pass), door);
+      start_http_connection(net, target.sweeper, std::move(channel), std::move(pass), door);
     }
   });
 }

@@ -25,6 +25,8 @@ std::expected<Endpoint, std::string> parse_endpoint(std::string_view text);
 
 enum class Listen : std::uint8_t { kHttp, kTcp, kAdmin };
 
+enum class Signal : std::uint8_t { kStop, kReload };
+
 class NetServer {
  public:
   /// `net` must outlive the server. Nothing listens and no thread runs yet.
@@ -34,10 +36,11 @@ class NetServer {
   NetServer(const NetServer&) = delete;
   NetServer& operator=(const NetServer&) = delete;
 
-  /// Binds, and says the address it got ("127.0.0.1:43210") or why not ("127.0.0.1:80: Permission denied").
-  std::expected<std::string, std::string> listen(Listen kind, const Endpoint& endpoint);
-  /// Runs the threads. A signal of SIGINT or SIGTERM calls `on_signal`, on a network thread.
-  void start(std::function<void()> on_signal);
+  /// Binds, and says the address it got ("127.0.0.1:43210") or why not ("127.0.0.1:80: Permission denied"). With
+  /// `is_tls` only TLS is spoken there, under the certificate of `net`.
+  std::expected<std::string, std::string> listen(Listen kind, const Endpoint& endpoint, bool is_tls);
+  /// Runs the threads. SIGINT and SIGTERM (kStop) and SIGHUP (kReload) call `on_signal`, on a network thread.
+  void start(std::function<void(Signal)> on_signal);
   /// Stops accepting, lets answers and sessions end, after `seconds_max` ends them by force; then joins the threads.
   /// Not from a network thread.
   void stop(double seconds_max);

@@ -25,21 +25,4 @@ void set_socket_options(Socket& socket) {
   socket.non_blocking(true, error);
 }
 
-void reset_socket(Socket& socket) {
-  asio::error_code error;
-  socket.set_option(asio::socket_base::linger(true, 0), error);
-  socket.close(error);
-}
-
-void close_socket(Socket& socket) {
-  asio::error_code error;
-  socket.close(error);
-}
-
-bool is_peer_gone(Socket& socket) {
-  char byte = 0;
-  const ssize_t got = ::recv(socket.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-  return got == 0;
-}
-
 }  // namespace talus::server

@@ -43,10 +43,5 @@ class Bell {
 
 /// Options of every accepted socket; failures are left to the first read.
 void set_socket_options(Socket& socket);
-/// Ends the connection at once; what was not taken is lost (SO_LINGER 0).
-void reset_socket(Socket& socket);
-void close_socket(Socket& socket);
-/// Whether the peer has closed its side, without reading a byte.
-bool is_peer_gone(Socket& socket);
 
 }  // namespace talus::server

@@ -69,7 +69,7 @@ Count count_of(ByeReason reason) {
 /// One streaming client. All on one thread; pool threads post to it.
 class StreamSession final : public std::enable_shared_from_this<StreamSession>, public Swept {
  public:
-  StreamSession(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, StreamStart start);
+  StreamSession(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start);
 
   Awaitable<void> read_loop();
   Awaitable<void> write_loop();
@@ -92,7 +92,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
 
   NetContext& net_;
   const asio::io_context::executor_type executor_;
-  Socket socket_;
+  Channel channel_;
   ConnectionPass pass_;
   std::unique_ptr<Framing> framing_;
   std::optional<std::size_t> world_;
@@ -102,6 +102,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   Phase phase_ = Phase::kHello;
   bool is_ended_ = false;
   std::string id_;
+  const NetLimits& limits_;
   TokenBucket messages_;
 
   FrameWriter writer_;
@@ -113,17 +114,18 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   Instant linger_until_ = Instant::max();
 };
 
-StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, StreamStart start)
+StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start)
     : Swept(sweeper),
       net_(net),
-      executor_(socket.get_executor()),
-      socket_(std::move(socket)),
+      executor_(channel.executor()),
+      channel_(std::move(channel)),
       pass_(std::move(pass)),
       framing_(std::move(start.framing)),
       world_(start.world),
       received_(std::move(start.received)),
-      messages_(net.limits.messages_per_s, net.limits.message_burst, net.clock.now()),
-      writer_(net, socket_, *framing_),
+      limits_(pass_.policy->limits),
+      messages_(limits_.messages_per_s, limits_.message_burst, net.clock.now()),
+      writer_(net, channel_, *framing_),
       opened_(net.clock.now()),
       received_at_(opened_),
       pinged_at_(opened_) {}
@@ -135,7 +137,7 @@ Awaitable<void> StreamSession::read_loop() {
   received_ = std::vector<std::byte>();
   while (!is_ended_) {
     const asio::mutable_buffer into(inbox_.data(), inbox_.size());
-    const auto [error, got] = co_await socket_.async_read_some(into, kAwait);
+    const auto [error, got] = co_await channel_.read_some(into);
     if (error) break;
     const Instant start = net_.clock.now();
     received_at_ = start;
@@ -172,7 +174,7 @@ void StreamSession::on_inbound(const Inbound& inbound) {
       return begin_closing(CloseCode::kNormal, {});
     case Inbound::Kind::kPing:
       // While the peer does not read, its newest ping may go unanswered; it has others to be answered first.
-      if (writer_.control_frames() < net_.limits.pongs_queued) writer_.push_control(framing_->pong(inbound.bytes));
+      if (writer_.control_frames() < limits_.pongs_queued) writer_.push_control(framing_->pong(inbound.bytes));
       return;
     case Inbound::Kind::kFault:
       net_.metrics.add(Count::kByeMalformed);
@@ -190,7 +192,7 @@ void StreamSession::on_bytes(std::span<const std::byte> bytes) {
   if (!decoded) return say_bye(ByeReason::kMalformed, protocol::describe(decoded.error()));
   const Message& message = decoded->message;
   if (const auto* ping = std::get_if<protocol::Ping>(&message)) {
-    if (writer_.control_frames() < net_.limits.pongs_queued) writer_.send_control(protocol::Pong{ping->nonce});
+    if (writer_.control_frames() < limits_.pongs_queued) writer_.send_control(protocol::Pong{ping->nonce});
   } else if (std::holds_alternative<protocol::Pong>(message)) {
     return;
   } else if (std::holds_alternative<protocol::Bye>(message)) {
@@ -222,7 +224,7 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   const bool takes_strips = version >= protocol::kVersionOfStrips;
   const std::uint64_t number = net_.session_numbers.fetch_add(1, std::memory_order_relaxed);
   const ClientId client = 2 * (number + 1);  // even: addresses have odd ones
-  feed_.emplace(net_, writer_, named, hello.credit_bytes, takes_strips, client, executor_, weak_from_this());
+  feed_.emplace(net_, limits_, writer_, named, hello.credit_bytes, takes_strips, client, executor_, weak_from_this());
   phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);
   id_ = fmt::format("{:016x}", mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
@@ -240,17 +242,17 @@ void StreamSession::refuse(RefusedReason reason, std::string_view message) {
 
 Awaitable<void> StreamSession::write_loop() {
   while (!is_ended_) {
-    if (writer_.empty()) {
-      if (phase_ == Phase::kClosing) break;
-      co_await writer_.wait();
-    } else if (co_await writer_.write_batch()) {
+    if (!writer_.empty()) {
+      const bool was_written = co_await writer_.write_batch();
+      if (!was_written) end();
       if (feed_) feed_->advance();
+    } else if (phase_ != Phase::kClosing) {
+      co_await writer_.wait();
     } else {
-      co_return end();
+      break;
     }
   }
-  asio::error_code ignored;
-  socket_.shutdown(Socket::shutdown_send, ignored);
+  channel_.shutdown_send();
 }
 
 // ---- the end
@@ -278,23 +280,22 @@ void StreamSession::end() {
   if (std::exchange(is_ended_, true)) return;
   phase_ = Phase::kClosing;
   if (feed_) feed_->close();
-  close_socket(socket_);
+  channel_.close();
   writer_.ring();
 }
 
 void StreamSession::abort() {
-  reset_socket(socket_);
+  channel_.reset();
   end();
 }
 
 void StreamSession::sweep(Instant now) {
-  const NetLimits& limits = net_.limits;
-  if (writer_.is_stalled_since(now - seconds(limits.write_stall_s))) {
+  if (writer_.is_stalled_since(now - seconds(limits_.write_stall_s))) {
     net_.metrics.add(Count::kByeTooSlow);
     net_.metrics.add(Count::kWriteStalled);
     return abort();
   }
-  if (writer_.bytes() > limits.send_hard_bytes) {
+  if (writer_.bytes() > limits_.send_hard_bytes) {
     net_.metrics.add(Count::kSendOverflow);
     return abort();
   }
@@ -302,14 +303,14 @@ void StreamSession::sweep(Instant now) {
     if (now >= linger_until_) end();
     return;
   }
-  if (phase_ == Phase::kHello && now - opened_ > seconds(limits.silent_s)) {
+  if (phase_ == Phase::kHello && now - opened_ > seconds(limits_.silent_s)) {
     return say_bye(ByeReason::kSilent, "no hello came");
   }
-  if (now - received_at_ > seconds(limits.gone_s)) {
+  if (now - received_at_ > seconds(limits_.gone_s)) {
     net_.metrics.add(Count::kByeSilent);
     return abort();
   }
-  if (now - std::max(received_at_, pinged_at_) > seconds(limits.ping_s)) {
+  if (now - std::max(received_at_, pinged_at_) > seconds(limits_.ping_s)) {
     pinged_at_ = now;
     std::vector<std::byte> ping = framing_->ping();
     ping.empty() ? writer_.send_control(protocol::Ping{0}) : writer_.push_control(std::move(ping));
@@ -319,10 +320,10 @@ void StreamSession::sweep(Instant now) {
 
 }  // namespace
 
-void start_stream_session(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, StreamStart start) {
-  const auto executor = socket.get_executor();
+void start_stream_session(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start) {
+  const auto executor = channel.executor();
   const auto session =
-      std::make_shared<StreamSession>(net, sweeper, std::move(socket), std::move(pass), std::move(start));
+      std::make_shared<StreamSession>(net, sweeper, std::move(channel), std::move(pass), std::move(start));
   const auto ended = [session, &net](const std::exception_ptr& fault) {
     if (fault == nullptr) return;
     net.metrics.add(Count::kConnectionFault);

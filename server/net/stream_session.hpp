@@ -16,7 +16,7 @@ struct StreamStart {
   std::vector<std::byte> received;   ///< bytes behind the handshake
 };
 
-/// On the thread of `sweeper`, which is that of `socket`.
-void start_stream_session(NetContext& net, Sweeper& sweeper, Socket socket, ConnectionPass pass, StreamStart start);
+/// On the thread of `sweeper`, which is that of `channel`.
+void start_stream_session(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start);
 
 }  // namespace talus::server

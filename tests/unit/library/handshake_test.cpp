@@ -67,7 +67,13 @@ TEST(ServerUrl, IsReadOrRefusedWithAReason) {
   ASSERT_TRUE(tcp);
   EXPECT_EQ(tcp->authority(), "example.org:8081");
   EXPECT_EQ(tcp->carrier, Carrier::kTcp);
-  for (const char* bad : {"", "example.org", "https://example.org", "tcp://a/path", "tcp://", "tcp://a:0", "http://",
+  const auto secure = parse_server_url("wss://example.org/talus");
+  ASSERT_TRUE(secure);
+  EXPECT_TRUE(secure->is_secure && !plain->is_secure);
+  EXPECT_EQ(secure->authority(), "example.org:443");
+  EXPECT_EQ(parse_server_url("tls://example.org")->port, 8081);
+  EXPECT_TRUE(parse_server_url("tls://example.org")->is_secure);
+  for (const char* bad : {"", "example.org", "ftp://example.org", "tcp://a/path", "tcp://", "tcp://a:0", "http://",
                           "http://:80", "http://a:0", "http://a:65536", "http://a:+1", "http://a:", "http://a b",
                           "http://a/?q", "http://u@a", "http://a\r\nX: y"}) {
     const auto refused = parse_server_url(bad);

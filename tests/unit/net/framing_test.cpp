@@ -182,19 +182,19 @@ TEST(TokenBucket, AllowsABurstAndThenItsRate) {
 }
 
 TEST(ConnectionCensus, CountsAllAndEachAddress) {
-  ConnectionCensus census(3, 2);
+  ConnectionCensus census;
   const PeerAddress a{1};
   const PeerAddress b{2};
   using Verdict = ConnectionCensus::Verdict;
-  const auto first = census.enter(a);
+  const auto first = census.enter(a, 3, 2);
   {
-    const auto second = census.enter(a);
-    EXPECT_EQ(census.enter(a).first, Verdict::kTooManyFromAddress);
-    const auto third = census.enter(b);
-    EXPECT_EQ(census.enter(b).first, Verdict::kTooMany);
+    const auto second = census.enter(a, 3, 2);
+    EXPECT_EQ(census.enter(a, 3, 2).first, Verdict::kTooManyFromAddress);
+    const auto third = census.enter(b, 3, 2);
+    EXPECT_EQ(census.enter(b, 3, 2).first, Verdict::kTooMany);
   }
   EXPECT_EQ(census.connections(), 1U);
-  EXPECT_EQ(census.enter(a).first, Verdict::kWelcome);
+  EXPECT_EQ(census.enter(a, 3, 2).first, Verdict::kWelcome);
 }
 
 TEST(HttpDate, IsTheOneOfTheSpecification) {

@@ -1,0 +1,40 @@
+// What an operator may change while the server runs: limits, certificates. One immutable value, replaced whole.
+//
+// A connection lives under the policy it was accepted with, so nothing it has checked once changes under it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "server/net/limits.hpp"
+#include "server/net/tls.hpp"
+
+namespace talus::server {
+
+struct NetPolicy {
+  NetLimits limits;
+  std::shared_ptr<const TlsContext> tls;  ///< of the listeners that speak TLS; nullptr when none does
+};
+using PolicyRef = std::shared_ptr<const NetPolicy>;
+
+/// Any thread.
+class PolicySlot {
+ public:
+  explicit PolicySlot(PolicyRef policy) : policy_(std::move(policy)) {}
+
+  PolicyRef load() const {
+    const std::lock_guard lock(mutex_);
+    return policy_;
+  }
+  void store(PolicyRef policy) {
+    const std::lock_guard lock(mutex_);
+    policy_.swap(policy);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  PolicyRef policy_;
+};
+
+}  // namespace talus::server
