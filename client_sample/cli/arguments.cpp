@@ -26,6 +26,7 @@ constexpr const char* kFooter = R"(Examples:
   talus view --at 4830,20,39285 --yaw 200 -o arch.png
   talus manifest check worlds/alps.toml
   talus manifest explain erosion.gully_weight
+  talus token --make-key join.key && talus token join.key --world default --hours 8
 
 Exit codes:
   0 done   1 server, network or file failed   2 wrong command line   3 chunk without a surface
@@ -34,6 +35,7 @@ Exit codes:
 void add_server(CLI::App& app, ServerOptions& server) {
   app.add_option("--server", server.url, "URL of the server: http or https; fly also takes tcp:// and tls://HOST:PORT")
       ->capture_default_str();
+  app.add_option("--token", server.token, "join token, for a server that asks for one (talus token)");
   app.add_option("--ca", server.ca_file, "PEM file of the authorities to trust, instead of the system's");
   app.add_option("--world", server.world, "name of the world")
       ->capture_default_str()
@@ -57,6 +59,7 @@ struct Arguments {
   GalleryOptions gallery;
   std::string checked;
   ExplainOptions explain;
+  TokenOptions token;
   std::string from;
   std::string to;
   std::function<ExitCode()> command;
@@ -215,6 +218,19 @@ void add_gallery(CLI::App& app, Arguments& arguments) {
   gallery->callback([&arguments] { arguments.command = [&arguments] { return cli::gallery(arguments.gallery); }; });
 }
 
+void add_token(CLI::App& app, Arguments& arguments) {
+  TokenOptions& options = arguments.token;
+  CLI::App* token = app.add_subcommand("token", "Make a join token for a server with --token-keys, or a key for one");
+  token->add_option("key", options.key_file, "file of the key, the server's own")->required();
+  token->add_flag("--make-key", options.makes_key, "write a new key there instead");
+  token->add_option("--world", options.world, "the world it opens")->capture_default_str();
+  token->add_option("--hours", options.hours, "how long it opens it")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0 / 3600.0, 24.0 * 3660.0));
+  token->add_option("--subject", options.subject, "whom it is made for");
+  token->callback([&arguments] { arguments.command = [&arguments] { return cli::token(arguments.token); }; });
+}
+
 void add_manifest(CLI::App& app, Arguments& arguments) {
   CLI::App* manifest = app.add_subcommand("manifest", "Check, explain or compare the TOML files of worlds");
   manifest->require_subcommand(1);
@@ -251,6 +267,7 @@ int run(int argc, char** argv) {
   add_survey(app, arguments);
   add_gallery(app, arguments);
   add_manifest(app, arguments);
+  add_token(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

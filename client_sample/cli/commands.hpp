@@ -17,6 +17,7 @@ struct ServerOptions {
   std::string url = "http://127.0.0.1:8080";
   std::string world = "default";
   std::string ca_file;  ///< PEM of the authorities to trust; empty: the system's
+  std::string token;    ///< for servers that ask for one
 };
 
 struct GetOptions {
@@ -126,6 +127,16 @@ struct GalleryOptions {
 };
 /// Draws side by side what single parameters do: one PNG a parameter.
 ExitCode gallery(const GalleryOptions& options);
+
+struct TokenOptions {
+  std::string key_file;
+  bool makes_key = false;  ///< writes a new key to `key_file`, and no token
+  std::string world = "default";
+  double hours = 24.0;
+  std::string subject;  ///< whom it is made for
+};
+/// Prints a token that opens a world of a server with the same key.
+ExitCode token(const TokenOptions& options);
 
 ExitCode manifest_check(const std::string& file);
 

@@ -11,6 +11,7 @@ std::expected<client::ServerAddress, ExitCode> reach_server(const ServerOptions&
     return std::unexpected(kUsage);
   }
   server->ca_file = options.ca_file;
+  server->token = options.token;
   return std::move(*server);
 }
 

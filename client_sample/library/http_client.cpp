@@ -27,7 +27,7 @@ class HttpClient::State : public std::enable_shared_from_this<State> {
     TALUS_CHECK(!done_);
     done_ = std::move(done);
     request_ = "GET " + server_.prefix + target + " HTTP/1.1\r\nHost: " + server_.authority() +
-               "\r\nUser-Agent: talus\r\nAccept: */*\r\n\r\n";
+               "\r\nUser-Agent: talus\r\nAccept: */*\r\n" + server_.authorization() + "\r\n";
     is_fresh_ = !is_connected_;
     expire();
     is_connected_ ? write() : resolve();

@@ -23,9 +23,9 @@ class Exchange {
 
   std::expected<HttpAnswer, ClientError> get(std::string_view target) {
     if (auto error = connect()) return std::unexpected(*error);
-    const std::string request = "GET " + server_.prefix + std::string(target) +
-                                " HTTP/1.1\r\nHost: " + server_.authority() +
-                                "\r\nUser-Agent: talus\r\nAccept: */*\r\nConnection: close\r\n\r\n";
+    const std::string request =
+        "GET " + server_.prefix + std::string(target) + " HTTP/1.1\r\nHost: " + server_.authority() +
+        "\r\nUser-Agent: talus\r\nAccept: */*\r\n" + server_.authorization() + "Connection: close\r\n\r\n";
     asio::error_code error = asio::error::would_block;
     asio::async_write(socket_, asio::buffer(request), [&](const asio::error_code& e, std::size_t) { error = e; });
     if (!wait(error)) return std::unexpected(failed(error));

@@ -23,9 +23,12 @@ struct ServerAddress {
   Carrier carrier = Carrier::kWebSocket;
   bool is_secure = false;  ///< TLS
   std::string ca_file{};   ///< PEM of the authorities to trust; empty: the system's
+  std::string token{};     ///< for servers that let only some in: goes with every request, and into the hello
 
   /// "host:port" as the Host field has it; IPv6 in brackets.
   std::string authority() const;
+  /// The head line that brings the token, with its CR LF; nothing without one.
+  std::string authorization() const { return token.empty() ? "" : "Authorization: Bearer " + token + "\r\n"; }
 };
 
 /// "http://host[:port][/prefix]" (or ws; port 80), "https://..." (or wss; 443), "tcp://host[:port]" or "tls://..."

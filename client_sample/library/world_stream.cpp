@@ -65,7 +65,7 @@ class WorldStream::Viewer {
     send(protocol::Hello{protocol::kVersionLow,
                          protocol::kVersionHigh,
                          options_.world,
-                         options_.token,
+                         options_.server.token,
                          {"drc"},
                          options_.credit_bytes,
                          options_.client});

@@ -28,7 +28,6 @@ namespace talus::client {
 struct StreamOptions {
   ServerAddress server;
   std::string world = "default";
-  std::string token;
   std::string client = "talus library";             ///< named in the server's log
   std::uint64_t credit_bytes = 4ULL * 1024 * 1024;  ///< bytes under way at most: more hides latency, less lag
   bool gives_credit_itself = false;                 ///< credit returns only through give_credit

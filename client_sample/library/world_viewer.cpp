@@ -82,7 +82,6 @@ class WorldViewer::Session {
     StreamOptions stream;
     stream.server = options_.server;
     stream.world = options_.world;
-    stream.token = options_.token;
     stream.client = options_.client;
     stream.gives_credit_itself = true;
     // What lies here untaken is given back to the new connection as it is taken.

@@ -27,7 +27,6 @@ namespace talus::client {
 struct ViewerOptions {
   ServerAddress server;                       ///< parse_server_url; WebSocket or TCP
   std::string world = "default";              ///< a name of GET /v1/worlds
-  std::string token;                          ///< only for servers that ask for one
   std::string client = "talus library";       ///< named in the server's log: say which engine this is
   std::uint64_t credit_bytes = 4ULL << 20U;   ///< under way or not taken yet, at most: more hides latency, less lag.
                                               ///< From 1 MiB, the largest message, else one chunk could be too large

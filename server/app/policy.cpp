@@ -13,6 +13,15 @@ std::expected<PolicyRef, std::string> make_policy(const Settings& settings) {
     if (!tls) return std::unexpected("tls_certificate: " + tls.error() + "\n");
     policy->tls = std::move(*tls);
   }
+  auto tokens = TokenKeys::load(settings.token_keys);
+  if (!tokens) return std::unexpected("token_keys: " + tokens.error() + "\n");
+  policy->tokens = std::move(*tokens);
+  auto origins = AllowedOrigins::parse(settings.allowed_origins);
+  if (!origins) return std::unexpected("allowed_origins: " + origins.error() + "\n");
+  policy->origins = std::move(*origins);
+  auto proxies = TrustedProxies::parse(settings.trusted_proxies);
+  if (!proxies) return std::unexpected("trusted_proxies: " + proxies.error() + "\n");
+  policy->proxies = std::move(*proxies);
   return policy;
 }
 

@@ -55,7 +55,7 @@ struct Server::Parts {
         builder(worlds, clock, metrics, pool.threads()),
         chunks(cache, stored, pool, builder, clock, metrics),
         net{worlds, files, clock, chunks, pool, metrics, worlds_json(worlds), PolicySlot(std::move(policy)),
-            {},     {},    {},    {},     {}},
+            {},     {},    {},    {},     {},   {}},
         network(net, network_threads(settings)) {}
 
   Settings settings;

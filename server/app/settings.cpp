@@ -9,7 +9,9 @@
 #include <iterator>
 #include <type_traits>
 
-#include "server/net/server.hpp"
+#include "server/net/allowed_origins.hpp"
+#include "server/net/endpoint.hpp"
+#include "server/net/trusted_proxies.hpp"
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
 
@@ -37,6 +39,9 @@ const std::array kTable{
   SettingInfo{"tls_certificate", &of_settings<&S::tls_certificate>, 0, 0, "FILE", "Certificate chain in PEM, leaf first: https and wss instead of http and ws."},
   SettingInfo{"tls_key", &of_settings<&S::tls_key>, 0, 0, "FILE", "Its private key in PEM, without a password."},
   SettingInfo{"tls_on", &of_settings<&S::tls_on>, 0, 3, "LISTENER", "Where TLS is spoken when there is a certificate: listen, tcp_listen, admin_listen; repeatable. Without it the first two."},
+  SettingInfo{"token_keys", &of_settings<&S::token_keys>, 0, 16, "FILE", "Key of join tokens; repeatable, each opens. With one, worlds are read with a token only."},
+  SettingInfo{"allowed_origins", &of_settings<&S::allowed_origins>, 0, 64, "ORIGIN", "Whose web pages may read and stream, such as https://maps.example.org; repeatable. Without it any."},
+  SettingInfo{"trusted_proxies", &of_settings<&S::trusted_proxies>, 0, 64, "ADDR", "Address or network whose X-Forwarded-For is believed, such as 127.0.0.1 or 10.0.0.0/8; repeatable."},
   SettingInfo{"viewer", &of_settings<&S::viewer>, 0, 0, "DIR", "Folder of the built browser viewer, served at /."},
   SettingInfo{"threads", &of_settings<&S::threads>, 0, 1024, "N", "Threads that make terrain; 0 is one for each processor."},
   SettingInfo{"net_threads", &of_settings<&S::net_threads>, 0, 64, "N", "Threads that talk to peers; 0 is one for every four processors."},
@@ -57,9 +62,12 @@ const std::array kTable{
   SettingInfo{"head_s", &of_limits<&L::head_s>, 0.1, 600, "S", "From the first byte of a request's head to its last.", true},
   SettingInfo{"idle_s", &of_limits<&L::idle_s>, 0.1, 3600, "S", "Between two requests of a connection.", true},
   SettingInfo{"write_stall_s", &of_limits<&L::write_stall_s>, 0.1, 600, "S", "A peer that takes no byte for so long is reset.", true},
+  SettingInfo{"read_rate_min", &of_limits<&L::read_rate_min>, 0, 1e9, "N", "Bytes a second that a peer takes at least, over write_stall_s; slower, it is reset.", true},
   SettingInfo{"wait_s", &of_limits<&L::wait_s>, 0.1, 600, "S", "A request waits so long for its chunk to be made; then 503.", true},
   SettingInfo{"ping_s", &of_limits<&L::ping_s>, 0.1, 3600, "S", "A silent stream is pinged after so long.", true},
   SettingInfo{"gone_s", &of_limits<&L::gone_s>, 0.2, 7200, "S", "A stream silent for so long is gone.", true},
+  SettingInfo{"message_bytes", &of_limits<&L::message_bytes>, 1024, 65536, "N", "Largest message of a stream, by its declared length.", true},
+  SettingInfo{"message_s", &of_limits<&L::message_s>, 0.1, 600, "S", "From the first byte of a message to its last.", true},
   SettingInfo{"messages_per_s", &of_limits<&L::messages_per_s>, 1, 100000, "N", "Messages of one stream, each 4 KiB counting as one more.", true},
   SettingInfo{"message_burst", &of_limits<&L::message_burst>, 17, 100000, "N", "Messages of one stream at once.", true},
   SettingInfo{"send_soft_bytes", &of_limits<&L::send_soft_bytes>, 65536, 1073741824, "N", "Queued for one stream beyond this, chunks are taken back.", true},
@@ -183,6 +191,12 @@ std::vector<SettingFault> setting_faults(const Settings& settings) {
   check_address("listen", settings.listen, false);
   check_address("tcp_listen", settings.tcp_listen, true);
   check_address("admin_listen", settings.admin_listen, true);
+  if (const auto origins = AllowedOrigins::parse(settings.allowed_origins); !origins) {
+    faults.push_back({"allowed_origins", origins.error()});
+  }
+  if (const auto proxies = TrustedProxies::parse(settings.trusted_proxies); !proxies) {
+    faults.push_back({"trusted_proxies", proxies.error()});
+  }
   if (settings.tls_certificate.empty() != settings.tls_key.empty()) {
     faults.push_back({settings.tls_key.empty() ? "tls_certificate" : "tls_key",
                       "a certificate and its key belong together: give tls_certificate and tls_key"});

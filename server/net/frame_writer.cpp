@@ -95,22 +95,21 @@ Awaitable<bool> FrameWriter::write_batch() {
     buffers_.push_back(asio::buffer(frame.message));
     if (frame.payload != nullptr) buffers_.push_back(asio::buffer(frame.payload->bytes));
   }
-  is_writing_ = true;
-  progress_at_ = start;
   for (std::span<asio::const_buffer> left(buffers_); !left.empty();) {
     asio::error_code error;
     std::size_t sent = channel_.write_some(left, error);
     if (error && error != asio::error::would_block) co_return false;
-    if (sent != 0) progress_at_ = net_.clock.now();
+    if (sent != 0) pace_.took(sent, net_.clock.now());
     while (!left.empty() && sent >= left.front().size()) {
       sent -= left.front().size();
       left = left.subspan(1);
     }
     if (left.empty()) break;
     left.front() += sent;
+    pace_.begin_wait(net_.clock.now());
     if (co_await channel_.wait_writable()) co_return false;
   }
-  is_writing_ = false;
+  if (queue_.empty()) pace_.end_wait();
   batch_.clear();
   net_.metrics.record(Hop::kWriteLoop, net_.clock.now() - start);
   co_return true;

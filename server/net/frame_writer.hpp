@@ -9,6 +9,7 @@
 #include "server/net/channel.hpp"
 #include "server/net/framing.hpp"
 #include "server/net/net_context.hpp"
+#include "server/net/read_pace.hpp"
 #include "server/net/send_queue.hpp"
 
 namespace talus::server {
@@ -34,8 +35,8 @@ class FrameWriter {
   bool empty() const { return queue_.empty(); }
   std::size_t bytes() const { return queue_.bytes(); }
   std::size_t control_frames() const { return queue_.control_frames(); }
-  /// Whether a write has been waiting for the peer since before `instant`.
-  bool is_stalled_since(Instant instant) const { return is_writing_ && progress_at_ < instant; }
+  /// How the peer takes what is written; ask often.
+  ReadPace::Verdict judge_pace(Instant now, const NetLimits& limits) { return pace_.judge(now, limits); }
 
   /// Returns when something was pushed, or `ring` was called.
   Awaitable<void> wait() { return bell_.wait(); }
@@ -57,8 +58,7 @@ class FrameWriter {
   std::vector<OutFrame> batch_;
   std::vector<asio::const_buffer> buffers_;
   Bell bell_;
-  Instant progress_at_{};
-  bool is_writing_ = false;
+  ReadPace pace_;
 };
 
 }  // namespace talus::server

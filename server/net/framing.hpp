@@ -55,6 +55,8 @@ class Framing {
   virtual void feed(std::span<const std::byte> bytes) = 0;
   /// The next event, or nothing when more bytes are needed.
   virtual std::optional<Inbound> next() = 0;
+  /// Whether nothing of a message, or of a frame, is held that has not ended.
+  virtual bool is_between_messages() const = 0;
 
   virtual FrameHead message_head(std::size_t message_bytes) const = 0;
   /// Frames of their own; empty where the framing has none.

@@ -24,6 +24,10 @@ std::string_view reason_of(int status) {
       return "Not Modified";
     case 400:
       return "Bad Request";
+    case 401:
+      return "Unauthorized";
+    case 403:
+      return "Forbidden";
     case 404:
       return "Not Found";
     case 405:
@@ -129,7 +133,9 @@ void write_head(const HttpAnswer& answer, const HeadOptions& options, std::strin
   }
   append_field(out, "ETag", answer.etag);
   append_field(out, "Cache-Control", answer.cache_control);
-  out.append("Access-Control-Allow-Origin: *\r\nAccess-Control-Expose-Headers: ETag, Talus-Chunk\r\n");
+  append_field(out, "Access-Control-Allow-Origin", options.allow_origin);
+  if (options.varies_by_origin) out.append("Vary: Origin\r\n");
+  out.append("Access-Control-Expose-Headers: ETag, Talus-Chunk\r\n");
   out.append("X-Content-Type-Options: nosniff\r\n");
   if (answer.retry_after_s != 0) {
     fmt::format_to(std::back_inserter(out), "Retry-After: {}\r\n", answer.retry_after_s);

@@ -31,6 +31,8 @@ struct HttpAnswer {
 };
 
 inline constexpr std::string_view kImmutable = "public, max-age=31536000, immutable";
+/// Where tokens open a world: for its reader's own cache, and for no shared one.
+inline constexpr std::string_view kImmutablePrivate = "private, max-age=31536000, immutable";
 inline constexpr std::string_view kNoCache = "no-cache";
 
 HttpAnswer json_answer(std::string body);
@@ -51,7 +53,9 @@ HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place);
 struct HeadOptions {
   std::string_view date;  ///< IMF-fixdate
   bool is_keep_alive = true;
-  bool names_keep_alive = false;  ///< HTTP/1.0 peers want to be told
+  bool names_keep_alive = false;        ///< HTTP/1.0 peers want to be told
+  std::string_view allow_origin = "*";  ///< whose pages may read; empty: none
+  bool varies_by_origin = false;        ///< a cache must not give it to another origin's pages
 };
 /// Replaces `out` by the head of `answer`; reuses its memory.
 void write_head(const HttpAnswer& answer, const HeadOptions& options, std::string& out);

@@ -4,16 +4,17 @@
 #include <array>
 #include <cstring>
 #include <exception>
-#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/base/check.hpp"
-#include "protocol/limits.hpp"
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
+#include "server/net/pool_answers.hpp"
+#include "server/net/read_pace.hpp"
 #include "server/net/stream_session.hpp"
 #include "server/net/tileset_routes.hpp"
 #include "server/net/websocket_handshake.hpp"
@@ -25,8 +26,6 @@ namespace talus::server {
 namespace {
 
 constexpr std::size_t kHeadReadBytes = 4096;
-/// A standing place looks at thousands of columns, a thousand points at four each.
-constexpr double kQueryCostS = 0.005;
 /// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
 /// connection and take the answer from under the peer.
 constexpr double kAnswerLingerS = 2;
@@ -47,32 +46,31 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
         policy_(pass_.policy),
         limits_(policy_->limits),
         scanner_(limits_),
-        bell_(executor_) {
+        client_(pass_.client),
+        allow_origin_(policy_->origins.allow_field(std::nullopt)),
+        answers_(net, executor_) {
     set_deadline(limits_.silent_s, Count::kSilentTimeout);
   }
 
   Awaitable<void> run();
+  /// Once, before `run`: what the pool makes for this connection keeps it alive.
+  void begin() { answers_.belong_to(weak_from_this()); }
   void sweep(Instant now) override;
   void drain() override;
   void abort() override;
 
  private:
-  using Question = std::move_only_function<HttpAnswer(const World&)>;
+  using Question = PoolAnswers::Question;
   enum class Next { kRequest, kEnd };
 
   Awaitable<bool> read_more();
   Awaitable<Next> serve(std::string_view head);
   Awaitable<Next> refuse(HttpFault fault);
-  HttpAnswer unavailable(std::string_view code, std::string_view message) const {
-    return unavailable_answer(net_.pool.wait_s(), code, message);
-  }
-  Awaitable<HttpAnswer> answer_chunk(PayloadName name);
-  Awaitable<HttpAnswer> answer_query(std::size_t world, Question question);
-  Awaitable<Next> upgrade(std::size_t world, std::string_view head, HttpMethod method);
+  Awaitable<Next> upgrade(const StreamRoute& route, std::string_view head);
+  std::optional<HttpAnswer> refuse_upgrade(const HttpRequest& request);
   Awaitable<bool> send(HttpAnswer answer, bool is_head_only);
   Awaitable<bool> write_all(std::array<asio::const_buffer, 2> buffers);
   Awaitable<void> linger();
-  void begin_wait();
 
   void set_deadline(double s, Count reason) {
     deadline_ = net_.clock.now() + seconds(s);
@@ -98,12 +96,10 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   bool is_idle_ = true;  ///< between requests
   std::uint64_t requests_ = 0;
 
-  // What a pool thread answers: posted here, then the bell is rung.
-  Bell bell_;
-  bool is_waiting_ = false;
-  Instant waiting_since_{};
-  std::optional<ChunkResult> chunk_result_;
-  std::optional<HttpAnswer> query_result_;
+  ClientId client_;                ///< whose share of the pool the present request takes
+  std::string_view allow_origin_;  ///< of the present request; of the policy
+  PoolAnswers answers_;
+  ReadPace pace_;
 };
 
 Awaitable<void> HttpConnection::run() {
@@ -177,124 +173,95 @@ Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
     net_.metrics.add(Count::kRequestsExhausted);
     is_keep_alive_ = false;
   }
-  const RouteContext context{net_.worlds, net_.files, net_.worlds_json, door_,
-                             net_.is_ready.load(std::memory_order_relaxed)};
+  if (pass_.is_proxy) client_ = client_of_address(counted_address(policy_->proxies.client_of(pass_.address, *request)));
+  allow_origin_ = policy_->origins.allow_field(request->field("origin"));
+  // Keys may have changed since this connection came: what opens a world is always judged by the newest.
+  const PolicyRef present = net_.policy.load();
+  const RouteContext context{net_.worlds,
+                             net_.files,
+                             net_.worlds_json,
+                             door_,
+                             net_.is_ready.load(std::memory_order_relaxed),
+                             &present->tokens,
+                             net_.clock.unix_seconds()};
   Route route = resolve(*request, context);
   net_.metrics.record(Hop::kReadLoop, net_.clock.now() - start);
 
   HttpAnswer answer;
   if (auto* at_once = std::get_if<AnswerRoute>(&route)) {
+    if (at_once->token_fault) net_.metrics.add(count_of(*at_once->token_fault));
     answer = std::move(at_once->answer);
   } else if (const auto* chunk = std::get_if<ChunkRoute>(&route)) {
-    answer = co_await answer_chunk(chunk->name);
+    answer = co_await answers_.chunk(chunk->name, client_);
   } else if (const auto* spawn = std::get_if<SpawnRoute>(&route)) {
     Question question = [near_m = spawn->near_m](const World& world) {
       return spawn_answer(standing_place(world.function(), near_m));
     };
-    answer = co_await answer_query(spawn->world, std::move(question));
+    answer = co_await answers_.query(spawn->world, client_, std::move(question));
   } else if (auto* points = std::get_if<PointsRoute>(&route)) {
     Question question = [places = std::move(points->places_m)](const World& world) {
       return json_answer(points_json(world.function(), places));
     };
-    answer = co_await answer_query(points->world, std::move(question));
+    answer = co_await answers_.query(points->world, client_, std::move(question));
   } else if (const auto* ray = std::get_if<RayRoute>(&route)) {
     Question question = [ray = *ray](const World& world) {
       return json_answer(ray_json(world.function(), ray.from_m, ray.direction, ray.max_m));
     };
-    answer = co_await answer_query(ray->world, std::move(question));
+    answer = co_await answers_.query(ray->world, client_, std::move(question));
   } else if (const auto* tileset = std::get_if<TilesetRoute>(&route)) {
     Question question = [place = tileset->place](const World& world) { return tileset_answer(world, place); };
-    answer = co_await answer_query(tileset->world, std::move(question));
+    answer = co_await answers_.query(tileset->world, client_, std::move(question));
   } else if (const auto* stream = std::get_if<StreamRoute>(&route)) {
-    co_return co_await upgrade(stream->world, head, request->method);
+    co_return co_await upgrade(*stream, head);
   } else {
     answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
     answer.text = net_.metrics.text();
   }
+  if (!present->tokens.empty() && answer.cache_control == kImmutable) answer.cache_control = kImmutablePrivate;
   const bool is_head_only = request->method == HttpMethod::kHead;
   const bool was_sent = co_await send(std::move(answer), is_head_only);
   if (was_sent && request->has_body) co_await linger();
   co_return was_sent ? Next::kRequest : Next::kEnd;
 }
 
-Awaitable<HttpAnswer> HttpConnection::answer_chunk(PayloadName name) {
-  ChunkService::Done done = [self = shared_from_this()](ChunkResult result) mutable {
-    HttpConnection& connection = *self;
-    asio::post(connection.executor_, [self = std::move(self), result = std::move(result)]() mutable {
-      if (!self->is_waiting_) return;
-      self->chunk_result_ = std::move(result);
-      self->bell_.ring();
-    });
-  };
-  ChunkService::Answer answer = net_.chunks.request(name, {pass_.client, Lane::kView, 0.0}, std::move(done));
-  ChunkResult result = std::unexpected(ChunkError::kBusy);
-  if (auto* payload = std::get_if<PayloadRef>(&answer)) {
-    result = std::move(*payload);
-  } else if (std::holds_alternative<ChunkService::Ticket>(answer)) {
-    begin_wait();
-    while (is_waiting_ && !chunk_result_) co_await bell_.wait();
-    is_waiting_ = false;
-    if (chunk_result_) result = std::move(*chunk_result_);
-    chunk_result_.reset();
+/// What only this connection can say of a request that could be a WebSocket: whose page asks, and how many streams its
+/// address has. Behind a proxy a stream counts for the one who is served.
+std::optional<HttpAnswer> HttpConnection::refuse_upgrade(const HttpRequest& request) {
+  if (!policy_->origins.admits(request.field("origin"))) {
+    net_.metrics.add(Count::kOriginRefused);
+    return error_answer(403, "origin_not_allowed", "Origin: pages of this origin may not stream from here");
   }
-  if (!result) {
-    co_return result.error() == ChunkError::kBusy ? unavailable("busy", "too many chunks are being made: come again")
-                                                  : unavailable("chunk_failed", "this chunk could not be made");
+  if (!pass_.is_proxy) return std::nullopt;
+  const PeerAddress address = counted_address(policy_->proxies.client_of(pass_.address, request));
+  auto [verdict, place] =
+      net_.census.enter(address, std::numeric_limits<std::size_t>::max(), limits_.connections_per_address);
+  if (verdict == ConnectionCensus::Verdict::kWelcome) {
+    pass_.place = std::move(place);
+    return std::nullopt;
   }
-  co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
+  net_.metrics.add(Count::kConnectionsRefusedAddress);
+  return error_answer(429, "connections_per_address", "too many streams of your address");
 }
 
-Awaitable<HttpAnswer> HttpConnection::answer_query(std::size_t world, Question question) {
-  JobPool::Work work = [self = shared_from_this(), question = std::move(question),
-                        &of = *net_.worlds[world]](const JobPool::Context& context) mutable {
-    HttpAnswer answer;
-    try {
-      answer =
-          context.is_displaced ? self->unavailable("busy", "too many questions at once: come again") : question(of);
-    } catch (const std::exception& fault) {
-      log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
-      answer = self->unavailable("query_failed", "this question could not be answered");
-    }
-    HttpConnection& connection = *self;
-    asio::post(connection.executor_, [self = std::move(self), answer = std::move(answer)]() mutable {
-      if (!self->is_waiting_) return;
-      self->query_result_ = std::move(answer);
-      self->bell_.ring();
-    });
-  };
-  const JobPool::Pushed pushed = net_.pool.push({pass_.client, Lane::kView, 0.0, kQueryCostS}, std::move(work));
-  JobPool::tell_displaced(pushed.displaced);
-  const JobPool::JobRef job = pushed.job;
-  if (job == nullptr) {
-    net_.metrics.add(Count::kQueryShed);
-    co_return unavailable("busy", "too many questions at once: come again");
-  }
-  begin_wait();
-  while (is_waiting_ && !query_result_) co_await bell_.wait();
-  is_waiting_ = false;
-  if (!query_result_) {
-    net_.pool.cancel(job);
-    co_return unavailable("busy", "the answer took too long: come again");
-  }
-  HttpAnswer answer = std::move(*query_result_);
-  query_result_.reset();
-  co_return answer;
-}
-
-Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::string_view head, HttpMethod method) {
+Awaitable<HttpConnection::Next> HttpConnection::upgrade(const StreamRoute& route, std::string_view head) {
   const auto request = parse_head(head, limits_);
   TALUS_CHECK(request.has_value());
   auto handshake = websocket_handshake(*request);
+  if (handshake) {
+    if (auto refusal = refuse_upgrade(*request)) handshake = std::unexpected(std::move(*refusal));
+  }
   if (!handshake) {
     HttpAnswer answer = std::move(handshake.error());
-    co_return co_await send(std::move(answer), method == HttpMethod::kHead) ? Next::kRequest : Next::kEnd;
+    const bool is_head_only = request->method == HttpMethod::kHead;
+    co_return co_await send(std::move(answer), is_head_only) ? Next::kRequest : Next::kEnd;
   }
   head_ = std::move(*handshake);
   const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_), asio::const_buffer{}};
   if (!co_await write_all(buffers)) co_return Next::kEnd;
   StreamStart start;
-  start.framing = make_websocket_framing(protocol::kInboundMessageBytesMax);
-  start.world = world;
+  start.framing = make_websocket_framing(limits_.message_bytes);
+  start.world = route.world;
+  start.is_admitted = route.is_admitted;
   const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
   start.received.assign(rest.begin(), rest.end());
   deadline_ = Instant::max();
@@ -304,7 +271,8 @@ Awaitable<HttpConnection::Next> HttpConnection::upgrade(std::size_t world, std::
 
 Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
   net_.metrics.add(count_of(answer.status));
-  const HeadOptions options{sweeper().http_date(), is_keep_alive_, is_http_1_0_};
+  const HeadOptions options{sweeper().http_date(), is_keep_alive_, is_http_1_0_, allow_origin_,
+                            !policy_->origins.empty()};
   write_head(answer, options, head_);
   const auto body = answer.body();
   const bool has_body = !is_head_only && answer.status != 204 && answer.status != 304;
@@ -322,15 +290,17 @@ Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buff
     asio::error_code error;
     std::size_t sent = channel_.write_some(buffers, error);
     if (error && error != asio::error::would_block) co_return false;
+    if (pace_.is_waiting()) pace_.took(sent, net_.clock.now());
     for (asio::const_buffer& buffer : buffers) {
       const std::size_t of_this = std::min(sent, buffer.size());
       buffer += of_this;
       sent -= of_this;
     }
     if (buffers[0].size() + buffers[1].size() == 0) break;
-    set_deadline(limits_.write_stall_s, Count::kWriteStalled);
+    pace_.begin_wait(net_.clock.now());
     if (co_await channel_.wait_writable()) co_return false;
   }
+  pace_.end_wait();
   deadline_ = Instant::max();
   co_return true;
 }
@@ -347,28 +317,22 @@ Awaitable<void> HttpConnection::linger() {
   }
 }
 
-void HttpConnection::begin_wait() {
-  is_waiting_ = true;
-  waiting_since_ = net_.clock.now();
-}
-
 void HttpConnection::sweep(Instant now) {
-  if (is_waiting_) {
+  if (const auto since = answers_.waiting_since()) {
     // A ticket is dropped as soon as nobody waits behind this connection.
-    const bool is_gone = now - waiting_since_ > seconds(kHalfClosedS) && channel_.is_peer_gone();
-    if (!is_gone && now - waiting_since_ < seconds(limits_.wait_s)) return;
-    is_waiting_ = false;
-    bell_.ring();
+    const bool is_gone = now - *since > seconds(kHalfClosedS) && channel_.is_peer_gone();
+    if (is_gone || now - *since >= seconds(limits_.wait_s)) answers_.give_up();
     return;
+  }
+  if (const auto pace = pace_.judge(now, limits_); pace != ReadPace::Verdict::kFine) {
+    net_.metrics.add(count_of(pace));
+    pace_.end_wait();
+    return channel_.reset();
   }
   if (now < deadline_) return;
   deadline_ = Instant::max();
   if (deadline_reason_ != Count::kEnd) net_.metrics.add(deadline_reason_);
-  if (deadline_reason_ == Count::kWriteStalled) {
-    channel_.reset();
-  } else {
-    channel_.close();
-  }
+  channel_.close();
 }
 
 void HttpConnection::drain() {
@@ -379,9 +343,8 @@ void HttpConnection::drain() {
 }
 
 void HttpConnection::abort() {
-  is_waiting_ = false;
   channel_.reset();
-  bell_.ring();
+  answers_.give_up();
 }
 
 }  // namespace
@@ -390,6 +353,7 @@ void start_http_connection(NetContext& net, Sweeper& sweeper, Channel channel, C
   const auto executor = channel.executor();
   auto connection = std::make_shared<HttpConnection>(net, sweeper, std::move(channel), std::move(pass), door);
   HttpConnection& running = *connection;
+  running.begin();
   asio::co_spawn(executor, running.run(), [connection = std::move(connection), &net](const std::exception_ptr& fault) {
     if (fault != nullptr) net.metrics.add(Count::kConnectionFault);
   });

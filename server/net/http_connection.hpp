@@ -16,6 +16,8 @@ struct ConnectionPass {
   ConnectionCensus::Place place;
   ClientId client = 0;  ///< of its address: what HTTP asks for is shared out by it
   PolicyRef policy;     ///< as it was when the connection came
+  WholeAddress address{};
+  bool is_proxy = false;  ///< one whose word on addresses is taken
 };
 
 /// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `channel`.

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "protocol/limits.hpp"
+
 namespace talus::server {
 
 struct NetLimits {
@@ -17,11 +19,15 @@ struct NetLimits {
   double head_s = 10;         ///< from the first byte of a head to its last, however the bytes are spread
   double idle_s = 30;         ///< between requests
   double write_stall_s = 10;  ///< no byte taken by the peer: reset
-  double wait_s = 30;         ///< for a chunk that is being made: 503
+  double read_rate_min =
+      1024;            ///< bytes a second a peer takes, over write_stall_s, while there is something for it; or reset
+  double wait_s = 30;  ///< for a chunk that is being made: 503
 
   // Streams.
   double ping_s = 20;
   double gone_s = 45;
+  std::size_t message_bytes = protocol::kInboundMessageBytesMax;
+  double message_s = 15;  ///< from the first byte of a message to its last, however the bytes are spread
   double messages_per_s = 60;
   double message_burst = 120;
   std::size_t send_soft_bytes = 1024 * 1024;  ///< queued beyond this: chunks are taken back and asked for again

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "server/net/connection_census.hpp"
 #include "server/net/net_policy.hpp"
 #include "server/net/static_files.hpp"
 #include "server/observe/metrics.hpp"
@@ -26,6 +27,7 @@ struct NetContext {
   Metrics& metrics;
   const std::string worlds_json;
   PolicySlot policy;  ///< of connections to come
+  ConnectionCensus census;
 
   Gate connections;                      ///< one pass a connection; empty when the last has ended
   Gate admin_connections;                ///< those of the admin door, which is open until the end

@@ -25,7 +25,7 @@ constexpr std::size_t kSegmentsMax = 12;
 constexpr std::string_view kAllowReads = "Allow: GET, HEAD, OPTIONS\r\n";
 constexpr std::string_view kPreflight =
     "Allow: GET, HEAD, OPTIONS\r\nAccess-Control-Allow-Methods: GET, HEAD, OPTIONS\r\n"
-    "Access-Control-Allow-Headers: If-None-Match, Content-Type\r\nAccess-Control-Max-Age: 86400\r\n";
+    "Access-Control-Allow-Headers: Authorization, If-None-Match, Content-Type\r\nAccess-Control-Max-Age: 86400\r\n";
 
 AnswerRoute text_answer(int status, std::string_view text) {
   HttpAnswer answer;
@@ -148,9 +148,41 @@ Route ray_route(const HttpRequest& request, const RouteContext& context, std::si
   return route;
 }
 
+/// The token a request brings, in its head or, for those who cannot write one, in its query.
+std::string token_of(const HttpRequest& request) {
+  constexpr std::string_view kBearer = "bearer ";
+  const std::string_view field = request.field("authorization").value_or("");
+  if (field.size() > kBearer.size() && equal_ignoring_case(field.substr(0, kBearer.size()), kBearer)) {
+    return std::string(field.substr(kBearer.size()));
+  }
+  return query_value(request.query, "token").value;
+}
+
+AnswerRoute refuse_stranger(TokenFault fault) {
+  const bool is_elsewhere = fault == TokenFault::kOtherWorld;
+  const std::string_view challenge = fault == TokenFault::kMissing ? "WWW-Authenticate: Bearer realm=\"talus\"\r\n"
+                                     : is_elsewhere
+                                         ? "WWW-Authenticate: Bearer realm=\"talus\", error=\"insufficient_scope\"\r\n"
+                                         : "WWW-Authenticate: Bearer realm=\"talus\", error=\"invalid_token\"\r\n";
+  const std::string_view code = fault == TokenFault::kMissing ? "token_missing" : "token_refused";
+  return {error_answer(is_elsewhere ? 403 : 401, code, describe(fault), challenge), fault};
+}
+
 Route world_route(const HttpRequest& request, const RouteContext& context, Segments parts) {
   const std::size_t world = world_index(context.worlds, parts[0]);
   if (world == context.worlds.size()) return not_found("unknown_world", "there is no world of that name here");
+  // Who only asks which methods there are brings no token (CORS).
+  const bool is_guarded =
+      context.tokens != nullptr && !context.tokens->empty() && request.method != HttpMethod::kOptions;
+  const bool is_stream = parts.size() == 2 && parts[1] == "stream";
+  bool is_admitted = true;
+  if (is_guarded) {
+    const std::string token = token_of(request);
+    is_admitted = !token.empty();
+    const auto fault = context.tokens->fault_of(token, parts[0], context.now_unix_s);
+    if (fault && (is_admitted || !is_stream)) return refuse_stranger(*fault);
+  }
+  if (is_stream) return StreamRoute{world, is_admitted};
   if (parts.size() == 1) {
     const World& found = *context.worlds[world];
     return cacheable_json(request, found.manifest_json(), found.manifest_etag());
@@ -163,7 +195,6 @@ Route world_route(const HttpRequest& request, const RouteContext& context, Segme
   if (parts.size() == 2 && parts[1] == "spawn") return spawn_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "points") return points_route(request, context, world);
   if (parts.size() == 2 && parts[1] == "ray") return ray_route(request, context, world);
-  if (parts.size() == 2 && parts[1] == "stream") return StreamRoute{world};
   return not_found("unknown_route", "there is nothing of that name in a world");
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "server/cache/payload.hpp"
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
+#include "server/net/join_token.hpp"
 #include "server/net/static_files.hpp"
 #include "server/world/world.hpp"
 
@@ -21,6 +24,7 @@ namespace talus::server {
 /// Answer at once.
 struct AnswerRoute {
   HttpAnswer answer;
+  std::optional<TokenFault> token_fault{};  ///< why, when it refuses a stranger
 };
 /// Answer with the payload, cacheable for ever.
 struct ChunkRoute {
@@ -51,6 +55,7 @@ struct TilesetRoute {
 /// Become a stream of this world.
 struct StreamRoute {
   std::size_t world = 0;
+  bool is_admitted = false;  ///< else the hello must bring a token
 };
 /// Read the metrics; admin door only.
 struct MetricsRoute {};
@@ -65,7 +70,9 @@ struct RouteContext {
   const StaticFiles& files;
   const std::string& worlds_json;
   Door door = Door::kPublic;
-  bool is_ready = true;  ///< false while starting and draining
+  bool is_ready = true;               ///< false while starting and draining
+  const TokenKeys* tokens = nullptr;  ///< of those who may read; without keys everybody may
+  std::int64_t now_unix_s = 0;
 };
 
 Route resolve(const HttpRequest& request, const RouteContext& context);

@@ -12,18 +12,17 @@
 #include <csignal>
 #include <exception>
 #include <future>
+#include <limits>
 #include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "protocol/limits.hpp"
 #include "server/net/connection_census.hpp"
 #include "server/net/http_connection.hpp"
 #include "server/net/socket.hpp"
 #include "server/net/stream_session.hpp"
 #include "server/net/sweeper.hpp"
-#include "server/net/url_text.hpp"
 #include "server/observe/log.hpp"
 
 namespace talus::server {
@@ -36,11 +35,9 @@ constexpr std::string_view kFull =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nContent-Length: 63\r\nRetry-After: 5\r\n"
     "Connection: close\r\n\r\n{\"error\":\"busy\",\"message\":\"too many connections: come again\"}\r\n";
 
-PeerAddress address_of(const asio::ip::address& address) {
-  if (!address.is_v6()) return asio::ip::make_address_v6(asio::ip::v4_mapped, address.to_v4()).to_bytes();
-  PeerAddress out = address.to_v6().to_bytes();
-  if (!address.to_v6().is_v4_mapped()) std::fill(out.begin() + 8, out.end(), static_cast<unsigned char>(0));
-  return out;
+WholeAddress whole_address(const asio::ip::address& address) {
+  if (address.is_v6()) return address.to_v6().to_bytes();
+  return asio::ip::make_address_v6(asio::ip::v4_mapped, address.to_v4()).to_bytes();
 }
 
 struct IoThread {
@@ -96,7 +93,6 @@ struct NetServer::Threads {
   void close_listeners(bool is_admin);
 
   NetContext& net;
-  ConnectionCensus census;
   SpareDescriptor spare;
   std::vector<std::unique_ptr<IoThread>> io;
   std::vector<std::unique_ptr<Listener>> listeners;
@@ -105,19 +101,6 @@ struct NetServer::Threads {
   std::size_t next = 0;
   bool is_running = false;
 };
-
-std::expected<Endpoint, std::string> parse_endpoint(std::string_view text) {
-  const std::size_t colon = text.rfind(':');
-  const std::string fault = "expected ADDRESS:PORT, such as 127.0.0.1:8080 or [::1]:0";
-  if (colon == std::string_view::npos) return std::unexpected(fault);
-  const auto port = whole_number(text.substr(colon + 1));
-  std::string_view address = text.substr(0, colon);
-  if (address.starts_with('[') && address.ends_with(']')) address = address.substr(1, address.size() - 2);
-  asio::error_code error;
-  asio::ip::make_address(address, error);
-  if (error || !port || *port < 0 || *port > 65'535) return std::unexpected(fault);
-  return Endpoint{std::string(address), static_cast<std::uint16_t>(*port)};
-}
 
 NetServer::NetServer(NetContext& net, std::size_t threads)
     : net_(net), threads_(std::make_unique<Threads>(net, threads)) {}
@@ -250,17 +233,26 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
   asio::error_code error;
   const auto peer = socket.remote_endpoint(error);
   if (error) return;  // gone already
-  const PeerAddress address = address_of(peer.address());
+  const WholeAddress whole = whole_address(peer.address());
+  const PeerAddress address = counted_address(whole);
   PolicyRef policy = net.policy.load();
-  auto [verdict, place] = census.enter(address, policy->limits.connections, policy->limits.connections_per_address);
+  // A proxy speaks for many: those behind it are counted when their streams open.
+  const bool is_proxy = policy->proxies.contains(whole);
+  const std::size_t address_max =
+      is_proxy ? std::numeric_limits<std::size_t>::max() : policy->limits.connections_per_address;
+  auto [verdict, place] = net.census.enter(address, policy->limits.connections, address_max);
   if (verdict != ConnectionCensus::Verdict::kWelcome) {
     net.metrics.add(verdict == ConnectionCensus::Verdict::kTooMany ? Count::kConnectionsRefusedTotal
                                                                    : Count::kConnectionsRefusedAddress);
     if (kind != Listen::kTcp && !listener.is_tls) socket.write_some(asio::buffer(kFull), error);
     return;
   }
-  ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(), std::move(place),
-                      client_of_address(address), std::move(policy)};
+  ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(),
+                      std::move(place),
+                      client_of_address(address),
+                      std::move(policy),
+                      whole,
+                      is_proxy};
   if (!pass.gate) return;
   net.metrics.add(Count::kConnectionsAccepted);
   set_socket_options(socket);
@@ -269,7 +261,7 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
     Channel channel(std::move(socket), tls, net.metrics);
     if (kind == Listen::kTcp) {
       StreamStart start;
-      start.framing = make_tcp_framing(protocol::kInboundMessageBytesMax);
+      start.framing = make_tcp_framing(pass.policy->limits.message_bytes);
       start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
     } else {
       const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;

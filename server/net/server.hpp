@@ -10,18 +10,11 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 
+#include "server/net/endpoint.hpp"
 #include "server/net/net_context.hpp"
 
 namespace talus::server {
-
-/// "127.0.0.1:8080", "[::1]:0"; an address, not a name.
-struct Endpoint {
-  std::string address;
-  std::uint16_t port = 0;
-};
-std::expected<Endpoint, std::string> parse_endpoint(std::string_view text);
 
 enum class Listen : std::uint8_t { kHttp, kTcp, kAdmin };
 

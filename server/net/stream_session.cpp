@@ -87,6 +87,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   void refuse(RefusedReason reason, std::string_view message);
 
   void say_bye(ByeReason reason, std::string_view message);
+  void cut(ByeReason reason, std::string_view limit);
   void begin_closing(CloseCode code, std::string_view reason);
   void end();
 
@@ -98,6 +99,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   std::optional<std::size_t> world_;
   std::vector<std::byte> received_;  ///< behind the handshake, until the first read
   std::array<std::byte, kStreamReadBytes> inbox_;
+  const bool is_admitted_;
 
   Phase phase_ = Phase::kHello;
   bool is_ended_ = false;
@@ -111,6 +113,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   Instant opened_;
   Instant received_at_;
   Instant pinged_at_;
+  Instant partial_since_ = Instant::max();  ///< when the message under way began
   Instant linger_until_ = Instant::max();
 };
 
@@ -123,6 +126,7 @@ StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Channel channel,
       framing_(std::move(start.framing)),
       world_(start.world),
       received_(std::move(start.received)),
+      is_admitted_(start.is_admitted),
       limits_(pass_.policy->limits),
       messages_(limits_.messages_per_s, limits_.message_burst, net.clock.now()),
       writer_(net, channel_, *framing_),
@@ -155,8 +159,10 @@ void StreamSession::take(std::span<const std::byte> bytes) {
     const auto inbound = framing_->next();
     if (!inbound) break;
     net_.metrics.record(Hop::kNextMessage, net_.clock.now() - start);
+    partial_since_ = Instant::max();
     on_inbound(*inbound);
   }
+  if (!framing_->is_between_messages()) partial_since_ = std::min(partial_since_, received_at_);
   if (phase_ != Phase::kOpen) return;
   feed_->advance();
 }
@@ -219,6 +225,13 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   if (!hello.formats.empty() && !speaks_draco) return refuse(RefusedReason::kFormat, "the only format here is drc");
 
   const World& world = *net_.worlds[named];
+  if (!is_admitted_) {
+    const PolicyRef present = net_.policy.load();
+    if (const auto fault = present->tokens.fault_of(hello.token, world.name(), net_.clock.unix_seconds())) {
+      net_.metrics.add(server::count_of(*fault));
+      return refuse(RefusedReason::kToken, describe(*fault));
+    }
+  }
   world_ = named;
   const std::uint16_t version = std::min(hello.version_high, protocol::kVersionHigh);
   const bool takes_strips = version >= protocol::kVersionOfStrips;
@@ -284,20 +297,26 @@ void StreamSession::end() {
   writer_.ring();
 }
 
+/// Ends who would not hear a goodbye any more.
+void StreamSession::cut(ByeReason reason, std::string_view limit) {
+  net_.metrics.add(count_of(reason));
+  log(LogLevel::kInfo, "session cut off", {{"session", id_}, {"reason", protocol::name_of(reason)}, {"limit", limit}});
+  abort();
+}
+
 void StreamSession::abort() {
   channel_.reset();
   end();
 }
 
 void StreamSession::sweep(Instant now) {
-  if (writer_.is_stalled_since(now - seconds(limits_.write_stall_s))) {
-    net_.metrics.add(Count::kByeTooSlow);
-    net_.metrics.add(Count::kWriteStalled);
-    return abort();
+  if (const auto pace = writer_.judge_pace(now, limits_); pace != ReadPace::Verdict::kFine) {
+    net_.metrics.add(server::count_of(pace));
+    return cut(ByeReason::kTooSlow, pace == ReadPace::Verdict::kStalled ? "write_stall_s" : "read_rate_min");
   }
   if (writer_.bytes() > limits_.send_hard_bytes) {
     net_.metrics.add(Count::kSendOverflow);
-    return abort();
+    return cut(ByeReason::kTooSlow, "send_hard_bytes");
   }
   if (phase_ == Phase::kClosing) {
     if (now >= linger_until_) end();
@@ -306,9 +325,12 @@ void StreamSession::sweep(Instant now) {
   if (phase_ == Phase::kHello && now - opened_ > seconds(limits_.silent_s)) {
     return say_bye(ByeReason::kSilent, "no hello came");
   }
+  if (partial_since_ < now - seconds(limits_.message_s)) {
+    net_.metrics.add(Count::kMessageTimeout);
+    return say_bye(ByeReason::kTooSlow, "message_s: a message took too long to come");
+  }
   if (now - received_at_ > seconds(limits_.gone_s)) {
-    net_.metrics.add(Count::kByeSilent);
-    return abort();
+    return cut(ByeReason::kSilent, "gone_s");
   }
   if (now - std::max(received_at_, pinged_at_) > seconds(limits_.ping_s)) {
     pinged_at_ = now;

@@ -14,6 +14,7 @@ struct StreamStart {
   std::unique_ptr<Framing> framing;
   std::optional<std::size_t> world;  ///< named by the URL; else the hello names it
   std::vector<std::byte> received;   ///< bytes behind the handshake
+  bool is_admitted = false;          ///< by its URL; else the hello brings the token, if one is needed
 };
 
 /// On the thread of `sweeper`, which is that of `channel`.

@@ -42,6 +42,8 @@ class TcpFraming final : public Framing {
     return std::nullopt;
   }
 
+  bool is_between_messages() const override { return head_size_ == 0; }
+
   FrameHead message_head(std::size_t message_bytes) const override {
     FrameHead head;
     for (; head.size < kHeadBytes; ++head.size)

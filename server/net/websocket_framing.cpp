@@ -44,6 +44,8 @@ class WebSocketFraming final : public Framing {
     return std::nullopt;
   }
 
+  bool is_between_messages() const override { return !has_begun_ && !is_in_message_; }
+
   FrameHead message_head(std::size_t message_bytes) const override {
     FrameHead head;
     const auto push = [&](std::size_t value) { head.bytes[head.size++] = static_cast<std::byte>(value); };
@@ -76,11 +78,13 @@ class WebSocketFraming final : public Framing {
   };
 
   static ssize_t receive(std::uint8_t* buffer, std::size_t length, int /*flags*/, void* user) {
-    auto& input = static_cast<WebSocketFraming*>(user)->input_;
+    auto& framing = *static_cast<WebSocketFraming*>(user);
+    auto& input = framing.input_;
     if (input.empty()) return -1;
     const std::size_t taken = std::min(length, input.size());
     std::memcpy(buffer, input.data(), taken);
     input = input.subspan(taken);
+    framing.has_begun_ = true;
     return static_cast<ssize_t>(taken);
   }
 
@@ -103,6 +107,7 @@ class WebSocketFraming final : public Framing {
     frame_taken_ += part.data_length;
     if (frame_taken_ < part.payload_length) return std::nullopt;
     is_in_frame_ = false;
+    has_begun_ = false;
     return is_control ? end_control(part.opcode) : end_data(part.fin != 0);
   }
 
@@ -151,6 +156,7 @@ class WebSocketFraming final : public Framing {
   std::vector<std::byte> message_;
   std::vector<std::byte> control_;
   std::uint64_t frame_taken_ = 0;
+  bool has_begun_ = false;  ///< bytes came since the last frame ended
   bool is_in_frame_ = false;
   bool is_in_message_ = false;
   bool is_whole_ = false;

@@ -82,6 +82,7 @@ const std::vector<Library>& libraries() {
       {"spdlog/", {"server/observe"}, 1},
       {"prometheus/", {"server/observe"}, 1},
       {"openssl/", {"protocol", "server/net", "server/storage"}, 0},
+      {"jwt.h", {"server/net", "client_sample/cli"}, 2},
       {"sqlite3.h", {"server/storage"}, 0},
       {"http_parser.h", {"server/net", "client_sample/library"}, 0},
       {"wslay/", {"server/net", "client_sample/library"}, 0},

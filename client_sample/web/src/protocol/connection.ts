@@ -4,6 +4,7 @@
 import type { StripKey } from './chunk_face';
 import type { ChunkKey, Vec3 } from './chunk_key';
 import type { AcceptedView } from './interest_area';
+import { pageToken } from './join_token';
 import { kKeysPerMessageMax, kVersionHigh, kVersionLow } from './limits';
 import {
   ByeReason,
@@ -168,7 +169,7 @@ export class Connection {
         versionLow: kVersionLow,
         versionHigh: kVersionHigh,
         world: this.world,
-        token: '',
+        token: pageToken,
         formats: ['drc'],
         creditBytes: kCreditBytes,
         client: 'talus-viewer',

@@ -1,6 +1,7 @@
 // What the server says about its worlds over plain HTTP, checked once, here.
 
 import type { WorldShape } from './chunk_key';
+import { authorization, pageToken } from './join_token';
 
 /// How the tiles of the map route lie; see SPEC.md, "Map tiles".
 export interface MapScheme {
@@ -24,7 +25,7 @@ export interface WorldManifest {
 }
 
 async function json(url: URL, signal?: AbortSignal): Promise<unknown> {
-  const response = await fetch(url, signal === undefined ? {} : { signal });
+  const response = await fetch(url, { headers: authorization(pageToken), ...(signal && { signal }) });
   if (!response.ok) throw new Error(`${url.pathname} answered ${response.status}`);
   return response.json();
 }
@@ -95,7 +96,10 @@ export async function fetchSpawn(base: URL, world: string, x: number, z: number)
 }
 
 export async function fetchMapTile(base: URL, world: string, zoom: number, x: number, y: number, signal: AbortSignal): Promise<ImageBitmap> {
-  const response = await fetch(new URL(`v1/worlds/${encodeURIComponent(world)}/map/${zoom}/${x}/${y}.png`, base), { signal });
+  const response = await fetch(new URL(`v1/worlds/${encodeURIComponent(world)}/map/${zoom}/${x}/${y}.png`, base), {
+    headers: authorization(pageToken),
+    signal,
+  });
   if (!response.ok) throw new Error(`a map tile answered ${response.status}`);
   return createImageBitmap(await response.blob());
 }

@@ -1,0 +1,86 @@
+#include "server/net/pool_answers.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "server/observe/log.hpp"
+#include "server/world/place_query.hpp"
+
+namespace talus::server {
+
+namespace {
+
+/// A standing place looks at thousands of columns, a thousand points at four each.
+constexpr double kQueryCostS = 0.005;
+
+}  // namespace
+
+Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
+  const std::uint64_t asked = ++asked_;
+  ChunkService::Done done = [this, owner = owner_.lock(), asked](ChunkResult result) mutable {
+    asio::post(executor_, [this, owner = std::move(owner), asked, result = std::move(result)]() mutable {
+      if (asked != asked_ || !waiting_since_) return;
+      chunk_result_ = std::move(result);
+      bell_.ring();
+    });
+  };
+  ChunkService::Answer answer = net_.chunks.request(name, {client, Lane::kView, 0.0}, std::move(done));
+  ChunkResult result = std::unexpected(ChunkError::kBusy);
+  if (auto* payload = std::get_if<PayloadRef>(&answer)) {
+    result = std::move(*payload);
+  } else if (std::holds_alternative<ChunkService::Ticket>(answer)) {
+    waiting_since_ = net_.clock.now();
+    while (waiting_since_ && !chunk_result_) co_await bell_.wait();
+    waiting_since_.reset();
+    if (chunk_result_) result = std::move(*chunk_result_);
+    chunk_result_.reset();
+  }
+  if (!result) {
+    co_return result.error() == ChunkError::kBusy ? unavailable("busy", "too many chunks are being made: come again")
+                                                  : unavailable("chunk_failed", "this chunk could not be made");
+  }
+  co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
+}
+
+Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Question question) {
+  const std::uint64_t asked = ++asked_;
+  JobPool::Work work = [this, owner = owner_.lock(), asked, question = std::move(question),
+                        &of = *net_.worlds[world]](const JobPool::Context& context) mutable {
+    HttpAnswer answer;
+    try {
+      answer = context.is_displaced ? unavailable("busy", "too many questions at once: come again") : question(of);
+    } catch (const std::exception& fault) {
+      log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
+      answer = unavailable("query_failed", "this question could not be answered");
+    }
+    asio::post(executor_, [this, owner = std::move(owner), asked, answer = std::move(answer)]() mutable {
+      if (asked != asked_ || !waiting_since_) return;
+      query_result_ = std::move(answer);
+      bell_.ring();
+    });
+  };
+  const JobPool::Pushed pushed = net_.pool.push({client, Lane::kView, 0.0, kQueryCostS}, std::move(work));
+  JobPool::tell_displaced(pushed.displaced);
+  const JobPool::JobRef job = pushed.job;
+  if (job == nullptr) {
+    net_.metrics.add(Count::kQueryShed);
+    co_return unavailable("busy", "too many questions at once: come again");
+  }
+  waiting_since_ = net_.clock.now();
+  while (waiting_since_ && !query_result_) co_await bell_.wait();
+  waiting_since_.reset();
+  if (!query_result_) {
+    net_.pool.cancel(job);
+    co_return unavailable("busy", "the answer took too long: come again");
+  }
+  HttpAnswer answer = std::move(*query_result_);
+  query_result_.reset();
+  co_return answer;
+}
+
+void PoolAnswers::give_up() {
+  waiting_since_.reset();
+  bell_.ring();
+}
+
+}  // namespace talus::server
