@@ -91,7 +91,7 @@ std::string manifest_json(const Manifest& manifest) {
                  {"sea_level_m", 0},
                  {"height_range_m", {number_json(heights.x), number_json(heights.y)}},
                  {"materials", materials_json()},
-                 {"formats", {"drc", "glb", "density", "height"}},
+                 {"formats", {"drc", "mesh", "glb", "density", "height"}},
                  {"map", map_json(world)},
                  {"limits", limits_json()},
                  {"parameters", parameters_json(manifest)}};

@@ -66,8 +66,8 @@ struct Arguments {
 };
 
 void add_get(CLI::App& app, Arguments& arguments) {
-  CLI::App* get =
-      app.add_subcommand("get", "Write one chunk to a file: .drc .glb .obj .ply .density, or its column: .height");
+  CLI::App* get = app.add_subcommand(
+      "get", "Write one chunk to a file: .drc .mesh .glb .obj .ply .density, or its column: .height");
   get->add_option("chunk", arguments.get.key,
                   "LOD/X/Y/Z, as 0/12/3/-7; LOD 0 is the finest; Y does not matter to .height")
       ->required();

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "client_sample/cli/text.hpp"
-#include "protocol/mesh_codec.hpp"
+#include "protocol/meshopt_codec.hpp"
 
 namespace talus::cli {
 
@@ -57,7 +57,8 @@ void Flight::on_chunk(const client::ArrivedChunk& chunk) {
   if (!log_.first_ground_s && head.key.lod == 0 && is_under_viewer(head.key)) log_.first_ground_s = seconds();
   if (!decodes_) return;
   const protocol::WorldShape& shape = stream_.info()->shape;
-  const auto mesh = protocol::decode_draco(chunk.payload, protocol::mesh_lattice(head.key, shape.cells, shape.voxel_m));
+  const auto mesh =
+      protocol::decode_surface(chunk.payload, protocol::mesh_lattice(head.key, shape.cells, shape.voxel_m));
   if (mesh) {
     log_.triangles += mesh->triangles();
   } else if (!log_.error) {

@@ -16,6 +16,7 @@
 #include "core/mesh/density_tile.hpp"
 #include "core/mesh/height_tile.hpp"
 #include "protocol/mesh_codec.hpp"
+#include "protocol/meshopt_codec.hpp"
 #include "protocol/tile_codec.hpp"
 
 namespace talus::cli {
@@ -24,7 +25,7 @@ namespace {
 using client::HttpAnswer;
 
 /// What a server has ready; other formats are made here from a .drc.
-const std::set<std::string_view> kServedExtensions{".drc", ".glb", ".density", ".height"};
+const std::set<std::string_view> kServedExtensions{".drc", ".mesh", ".glb", ".density", ".height"};
 
 std::string_view extension_of(std::string_view path) {
   const std::size_t dot = path.rfind('.');
@@ -60,6 +61,7 @@ ExitCode store_mesh(const GetOptions& options, const ChunkKey& key, const ChunkM
   const std::string_view extension = extension_of(options.output);
   if (extension == ".obj") return store(options, encode_obj(mesh, lattice, corner));
   if (extension == ".ply") return store(options, encode_ply(mesh, lattice, corner));
+  if (extension == ".mesh") return store_encoded(options, protocol::encode_meshopt(mesh, lattice));
   return store_encoded(options, extension == ".glb" ? protocol::encode_chunk_glb(mesh, key, cells, voxel_m, {})
                                                     : protocol::encode_draco(mesh, lattice));
 }
@@ -147,7 +149,8 @@ ExitCode get(const GetOptions& options) {
   }
   const std::string_view extension = extension_of(options.output);
   if (!kServedExtensions.contains(extension) && extension != ".obj" && extension != ".ply") {
-    fmt::print(stderr, "talus: \"{}\" has to end in .drc, .glb, .obj, .ply, .density or .height: that is the format\n",
+    fmt::print(stderr,
+               "talus: \"{}\" has to end in .drc, .mesh, .glb, .obj, .ply, .density or .height: that is the format\n",
                options.output);
     return kUsage;
   }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/meshopt_codec.hpp"
+
 namespace talus::client {
 
 void DecodeQueue::decode(Work& work) {
-  auto mesh = protocol::decode_draco(work.bytes, work.lattice);
+  auto mesh = protocol::decode_surface(work.bytes, work.lattice);
   if (mesh) {
     work.mesh = std::move(*mesh);
   } else {

@@ -62,13 +62,8 @@ class WorldStream::Viewer {
   void send(const Message& message) { connection_.send(protocol::encode(message)); }
 
   void greet() {
-    send(protocol::Hello{protocol::kVersionLow,
-                         protocol::kVersionHigh,
-                         options_.world,
-                         options_.server.token,
-                         {"drc"},
-                         options_.credit_bytes,
-                         options_.client});
+    send(protocol::Hello{protocol::kVersionLow, protocol::kVersionHigh, options_.world, options_.server.token,
+                         options_.formats, options_.credit_bytes, options_.client});
   }
 
   void take(std::span<const std::byte> bytes) {

@@ -29,6 +29,7 @@ struct StreamOptions {
   ServerAddress server;
   std::string world = "default";
   std::string client = "talus library";             ///< named in the server's log
+  std::vector<std::string> formats{"drc"};          ///< by preference: "drc", "mesh"
   std::uint64_t credit_bytes = 4ULL * 1024 * 1024;  ///< bytes under way at most: more hides latency, less lag
   bool gives_credit_itself = false;                 ///< credit returns only through give_credit
   std::vector<protocol::HeldChunk> held;            ///< sent right behind the hello
@@ -40,7 +41,7 @@ struct StreamOptions {
 struct ArrivedChunk {
   protocol::ChunkHead head;
   std::span<const std::byte>
-      payload;  ///< Draco (protocol/mesh_codec.hpp) for kind mesh, else empty; lives during the call
+      payload;                      ///< for protocol::decode_surface if of kind mesh, else empty; lives during the call
   std::uint64_t message_bytes = 0;  ///< what it cost of the credit
 };
 
@@ -48,7 +49,7 @@ struct ArrivedChunk {
 /// drawn; forget it with its chunk.
 struct ArrivedStrip {
   protocol::StripHead head;
-  std::span<const std::byte> payload;  ///< Draco on protocol::strip_lattice; empty for a strip without triangles
+  std::span<const std::byte> payload;  ///< the same on protocol::strip_lattice; empty for a strip without triangles
   std::uint64_t message_bytes = 0;
 };
 

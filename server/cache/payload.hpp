@@ -1,10 +1,12 @@
 // What a door hands out for a chunk, and the name it goes by. Immutable once published; any thread.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -17,9 +19,45 @@
 namespace talus::server {
 
 /// kHeight and kTile are of a whole column of chunks; kMap is a picture of a map tile: key.lod is its zoom, key.x and
-/// key.z are its x and y; kStrip is of one face of a chunk. The others are of one chunk.
-enum class PayloadFormat : std::uint8_t { kDraco, kGlb, kDensity, kHeight, kMap, kStrip, kTile };
-inline constexpr std::size_t kPayloadFormats = 7;
+/// key.z are its x and y; kStrip and kMeshoptStrip are of one face of a chunk. The others are of one chunk.
+enum class PayloadFormat : std::uint8_t {
+  kDraco,
+  kGlb,
+  kDensity,
+  kHeight,
+  kMap,
+  kStrip,
+  kTile,
+  kMeshopt,
+  kMeshoptStrip
+};
+inline constexpr std::size_t kPayloadFormats = 9;
+
+/// What chunks and their strips travel as: the names of hello's formats, and of URLs behind the dot.
+struct MeshFormat {
+  std::string_view name;
+  PayloadFormat chunk;
+  PayloadFormat strip;
+};
+/// The first is what a client gets that names none.
+inline constexpr std::array<MeshFormat, 2> kMeshFormats{{
+    {"drc", PayloadFormat::kDraco, PayloadFormat::kStrip},
+    {"mesh", PayloadFormat::kMeshopt, PayloadFormat::kMeshoptStrip},
+}};
+constexpr const MeshFormat* mesh_format_named(std::string_view name) {
+  for (const MeshFormat& format : kMeshFormats) {
+    if (format.name == name) return &format;
+  }
+  return nullptr;
+}
+
+/// Whether the payload is of a whole chunk's surface alone, so that it knows which faces that reaches.
+constexpr bool is_chunk_mesh(PayloadFormat format) {
+  return format == PayloadFormat::kDraco || format == PayloadFormat::kMeshopt;
+}
+constexpr bool is_strip(PayloadFormat format) {
+  return format == PayloadFormat::kStrip || format == PayloadFormat::kMeshoptStrip;
+}
 
 /// Whether a payload's name has an origin its positions are counted from.
 constexpr bool has_origin(PayloadFormat format) {

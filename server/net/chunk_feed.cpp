@@ -24,12 +24,13 @@ constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 }  // namespace
 
 ChunkFeed::ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world,
-                     std::uint64_t credit_bytes, bool takes_strips, ClientId client,
+                     const MeshFormat& format, std::uint64_t credit_bytes, bool takes_strips, ClientId client,
                      asio::io_context::executor_type executor, std::weak_ptr<void> owner)
     : net_(net),
       limits_(limits),
       writer_(writer),
       world_(world),
+      format_(format),
       client_(client),
       executor_(std::move(executor)),
       owner_(std::move(owner)),
@@ -109,8 +110,9 @@ bool ChunkFeed::request_next() {
   PayloadName name;
   name.world = static_cast<std::uint32_t>(world_);
   name.key = piece.key;
+  name.format = format_.chunk;
   if (piece.face) {
-    name.format = PayloadFormat::kStrip;
+    name.format = format_.strip;
     name.face = *piece.face;
   }
   ChunkService::Answer answer = net_.chunks.request(name, {client_, lane_of(*next), next->urgency}, std::move(done));

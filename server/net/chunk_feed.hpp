@@ -17,7 +17,8 @@ class ChunkFeed {
  public:
   /// `net`, `limits` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way.
   /// Counts as a session from here to its destruction. `client` is whose share of the pool its chunks take.
-  ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world,
+  /// `format` (of kMeshFormats) is what the client decodes.
+  ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world, const MeshFormat& format,
             std::uint64_t credit_bytes, bool takes_strips, ClientId client, asio::io_context::executor_type executor,
             std::weak_ptr<void> owner);
   ~ChunkFeed();
@@ -44,6 +45,7 @@ class ChunkFeed {
   const NetLimits& limits_;
   FrameWriter& writer_;
   const std::size_t world_;
+  const MeshFormat& format_;
   const ClientId client_;
   const asio::io_context::executor_type executor_;
   const std::weak_ptr<void> owner_;

@@ -100,7 +100,7 @@ HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat
   answer.cache_control = kImmutable;
   if (payload->kind != ChunkKind::kMesh) {
     answer.status = 204;
-    if (format == PayloadFormat::kStrip) return answer;
+    if (is_strip(format)) return answer;
     answer.fields = payload->kind == ChunkKind::kAir ? "Talus-Chunk: air\r\n" : "Talus-Chunk: rock\r\n";
     return answer;
   }
@@ -110,7 +110,7 @@ HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat
     return answer;
   }
   answer.content_type = has_origin(format) ? "model/gltf-binary" : "application/octet-stream";
-  if (format != PayloadFormat::kStrip) answer.fields = "Talus-Chunk: mesh\r\n";
+  if (!is_strip(format)) answer.fields = "Talus-Chunk: mesh\r\n";
   answer.payload = std::move(payload);
   return answer;
 }

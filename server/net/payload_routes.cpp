@@ -19,8 +19,9 @@ struct NamedFormat {
   std::string_view suffix;
   PayloadFormat format;
 };
-constexpr std::array<NamedFormat, 3> kChunkFormats{{
+constexpr std::array<NamedFormat, 4> kChunkFormats{{
     {".drc", PayloadFormat::kDraco},
+    {".mesh", PayloadFormat::kMeshopt},
     {".glb", PayloadFormat::kGlb},
     {".density", PayloadFormat::kDensity},
 }};
@@ -87,7 +88,7 @@ Route chunk_route(const HttpRequest& request, const RouteContext& context, std::
   std::string_view z = parts[3];
   const auto* const found = std::ranges::find_if(kChunkFormats, [&](const auto& f) { return z.ends_with(f.suffix); });
   if (found == kChunkFormats.end()) {
-    return bad_request("bad_format", "format: a chunk ends in .drc, .glb or .density");
+    return bad_request("bad_format", "format: a chunk ends in .drc, .mesh, .glb or .density");
   }
   name.format = found->format;
   z.remove_suffix(found->suffix.size());
@@ -102,17 +103,18 @@ Route chunk_route(const HttpRequest& request, const RouteContext& context, std::
 }
 
 Route seam_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
-  constexpr std::string_view kSuffix = ".drc";
   if (parts.size() != 5) return bad_request("bad_seam", "seam: expected seams/{lod}/{x}/{y}/{z}/{face}.drc");
-  if (!parts[4].ends_with(kSuffix)) return bad_request("bad_format", "format: a seam strip ends in .drc");
+  const std::size_t dot = std::min(parts[4].find('.'), parts[4].size());
+  const MeshFormat* const format = mesh_format_named(parts[4].substr(std::min(dot + 1, parts[4].size())));
+  if (format == nullptr) return bad_request("bad_format", "format: a seam strip ends in .drc or .mesh");
   PayloadName name;
   name.world = static_cast<std::uint32_t>(world);
-  name.format = PayloadFormat::kStrip;
+  name.format = format->strip;
   if (auto refused = read_coordinate("lod", parts[0], name.key.lod)) return std::move(*refused);
   if (auto refused = read_coordinate("x", parts[1], name.key.x)) return std::move(*refused);
   if (auto refused = read_coordinate("y", parts[2], name.key.y)) return std::move(*refused);
   if (auto refused = read_coordinate("z", parts[3], name.key.z)) return std::move(*refused);
-  const auto face = face_named(parts[4].substr(0, parts[4].size() - kSuffix.size()));
+  const auto face = face_named(parts[4].substr(0, dot));
   if (!face) return bad_request("bad_face", "face: expected one of px nx py ny pz nz");
   name.face = *face;
   return payload_route(request, context, name);

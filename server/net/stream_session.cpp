@@ -221,8 +221,12 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   if (named == net_.worlds.size() || (world_ && *world_ != named)) {
     return refuse(RefusedReason::kWorld, "there is no world of that name here");
   }
-  const bool speaks_draco = std::find(hello.formats.begin(), hello.formats.end(), "drc") != hello.formats.end();
-  if (!hello.formats.empty() && !speaks_draco) return refuse(RefusedReason::kFormat, "the only format here is drc");
+  const MeshFormat* format = hello.formats.empty() ? kMeshFormats.data() : nullptr;
+  for (const std::string& offered : hello.formats) {
+    format = mesh_format_named(offered);
+    if (format != nullptr) break;
+  }
+  if (format == nullptr) return refuse(RefusedReason::kFormat, "the formats here are drc and mesh");
 
   const World& world = *net_.worlds[named];
   if (!is_admitted_) {
@@ -237,12 +241,13 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   const bool takes_strips = version >= protocol::kVersionOfStrips;
   const std::uint64_t number = net_.session_numbers.fetch_add(1, std::memory_order_relaxed);
   const ClientId client = 2 * (number + 1);  // even: addresses have odd ones
-  feed_.emplace(net_, limits_, writer_, named, hello.credit_bytes, takes_strips, client, executor_, weak_from_this());
+  feed_.emplace(net_, limits_, writer_, named, *format, hello.credit_bytes, takes_strips, client, executor_,
+                weak_from_this());
   phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);
   id_ = fmt::format("{:016x}", mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
   log(LogLevel::kInfo, "session opened", {{"session", id_}, {"world", world.name()}, {"client", hello.client}});
-  writer_.send_control(protocol::Welcome{version, id_, world.hash(), "drc", world.manifest_json()});
+  writer_.send_control(protocol::Welcome{version, id_, world.hash(), std::string(format->name), world.manifest_json()});
 }
 
 void StreamSession::refuse(RefusedReason reason, std::string_view message) {

@@ -8,6 +8,7 @@
 
 #include "core/map/map_tile.hpp"
 #include "protocol/mesh_codec.hpp"
+#include "protocol/meshopt_codec.hpp"
 #include "protocol/png.hpp"
 #include "protocol/tile_codec.hpp"
 
@@ -20,7 +21,7 @@ constexpr std::size_t kColumnBlocks = 256;
 
 /// Whether the key is a chunk's, so that its heights can rule it out.
 bool is_of_chunk(PayloadFormat format) {
-  return format == PayloadFormat::kDraco || format == PayloadFormat::kGlb || format == PayloadFormat::kDensity;
+  return is_chunk_mesh(format) || format == PayloadFormat::kGlb || format == PayloadFormat::kDensity;
 }
 
 Footprint footprint_of(const PayloadName& name) {
@@ -106,7 +107,7 @@ ChunkKind TerrainBuilder::sample(const PayloadName& name, const WorldFunction& w
     sample_height_tile(world, scratch.build.columns, scratch.height);
     return ChunkKind::kMesh;
   }
-  if (name.format == PayloadFormat::kStrip) return sample_strip(name, world, scratch);
+  if (is_strip(name.format)) return sample_strip(name, world, scratch);
   if (name.format == PayloadFormat::kTile) {
     sample_tile(name, world, scratch);
     return ChunkKind::kMesh;
@@ -194,6 +195,10 @@ TerrainBuilder::Bytes TerrainBuilder::encode(const PayloadName& name, const Worl
       return protocol::encode_height(scratch.height, name.key);
     case PayloadFormat::kStrip:
       return protocol::encode_draco(scratch.mesh, protocol::strip_lattice(name.key, world.cells(), world.voxel_m()));
+    case PayloadFormat::kMeshopt:
+      return protocol::encode_meshopt(scratch.mesh, lattice);
+    case PayloadFormat::kMeshoptStrip:
+      return protocol::encode_meshopt(scratch.mesh, protocol::strip_lattice(name.key, world.cells(), world.voxel_m()));
     case PayloadFormat::kTile:
       return encode_tile(name, world, scratch);
     case PayloadFormat::kMap:
@@ -243,7 +248,7 @@ std::optional<ChunkPayload> TerrainBuilder::build(const PayloadName& name, std::
   if (!bytes) throw std::runtime_error("encode_chunk: " + std::string(protocol::describe(bytes.error())));
   // The payload stays for long: what the encoder reserved beyond it is given back.
   bytes->shrink_to_fit();
-  const unsigned faces = name.format == PayloadFormat::kDraco ? faces_reached(scratch.mesh, world.cells()) : 0;
+  const unsigned faces = is_chunk_mesh(name.format) ? faces_reached(scratch.mesh, world.cells()) : 0;
   return ChunkPayload{kind, std::move(*bytes), static_cast<std::uint8_t>(faces)};
 }
 

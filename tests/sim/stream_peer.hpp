@@ -87,6 +87,7 @@ class StreamPeer {
       const auto bytes = std::as_bytes(std::span(frame->bytes));
       auto decoded = protocol::decode(bytes);
       if (!decoded) return std::nullopt;
+      payload.assign(decoded->payload.begin(), decoded->payload.end());
       return std::move(decoded->message);
     }
     return std::nullopt;
@@ -121,7 +122,8 @@ class StreamPeer {
   Peer peer;
   std::string handshake;
   std::optional<Arrived> last_control;
-  std::size_t message_bytes = 0;  ///< of the last message
+  std::size_t message_bytes = 0;   ///< of the last message
+  std::vector<std::byte> payload;  ///< behind the last message's head
 
  private:
   Carrier carrier_;

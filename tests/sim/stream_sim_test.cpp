@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "protocol/limits.hpp"
+#include "protocol/meshopt_codec.hpp"
 #include "tests/sim/running_server.hpp"
 #include "tests/sim/stream_peer.hpp"
 
@@ -190,6 +191,36 @@ TEST_P(StreamSim, RefusesHellosItCannotServeWithAReason) {
   hello = good;
   hello.formats = {"obj"};
   EXPECT_EQ(reason_of(hello), protocol::RefusedReason::kFormat);
+}
+
+TEST_P(StreamSim, SendsTheFirstFormatOfThePeersThatItHas) {
+  RunningServer server;
+  StreamPeer stream = connect(server);
+  protocol::Hello hello;
+  hello.version_low = hello.version_high = 2;
+  hello.world = "default";
+  hello.formats = {"obj", "mesh", "drc"};
+  hello.credit_bytes = kPlenty;
+  stream.send(hello);
+  const auto welcome = stream.next_of<protocol::Welcome>();
+  ASSERT_TRUE(welcome.has_value());
+  EXPECT_EQ(welcome->format, "mesh");
+  stream.look_from(0, 500);
+  int chunks = 0;
+  int strips = 0;
+  while (const auto message = stream.next()) {
+    if (std::holds_alternative<protocol::Idle>(*message)) break;
+    if (stream.payload.empty()) continue;
+    if (const auto* chunk = std::get_if<ChunkHead>(&*message)) {
+      ++chunks;
+      EXPECT_TRUE(protocol::decode_meshopt(stream.payload, protocol::mesh_lattice(chunk->key, 32, 1.0)));
+    } else if (const auto* strip = std::get_if<protocol::StripHead>(&*message)) {
+      ++strips;
+      EXPECT_TRUE(protocol::decode_meshopt(stream.payload, protocol::strip_lattice(strip->strip.key, 32, 1.0)));
+    }
+  }
+  EXPECT_GT(chunks, 0);
+  EXPECT_GT(strips, 0);
 }
 
 TEST_P(StreamSim, EndsAPeerThatSendsNonsenseAndNamesTheReason) {

@@ -38,7 +38,7 @@ describe('talus', () => {
   });
 
   test('gets the bytes that HTTP gives, and makes the same without a server', async () => {
-    for (const format of ['drc', 'glb', 'density', 'height']) {
+    for (const format of ['drc', 'mesh', 'glb', 'density', 'height']) {
       const mesh = await meshPath(server, format === 'height' ? 'drc' : format);
       const key = /chunks\/(.*)\./.exec(mesh)[1];
       const [lod, x, , z] = key.split('/').map(Number);

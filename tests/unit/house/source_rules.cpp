@@ -72,6 +72,7 @@ const std::vector<Library>& libraries() {
   static const std::vector<Library> all{
       {"asio", {"server/net", "server/app", "client_sample/library", "client_sample/cli", "client_sample/load"}, 0},
       {"draco/", {"protocol"}, 2},
+      {"meshoptimizer.h", {"protocol"}, 1},
       {"png.h", {"protocol"}, 1},
       {"flatbuffers/", {"protocol"}, 2},
       {"talus_generated.h", {"protocol"}, 2},

@@ -14,26 +14,6 @@
 namespace talus::protocol {
 namespace {
 
-using Corner = std::array<int, 5>;  ///< position, material, ridge
-using Face = std::array<Corner, 3>;
-
-/// Triangles by what their corners are, turned so that the smallest corner comes first: order of vertices and of
-/// triangles does not matter, winding does.
-std::vector<Face> faces_of(const ChunkMesh& mesh) {
-  std::vector<Face> out;
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    Face face;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = mesh.indices[i + c];
-      face[c] = {mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z, mesh.materials[v], mesh.ridges[v]};
-    }
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    out.push_back(face);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
 
 TEST(DracoCodec, GivesBackEveryTriangleAtItsExactPlace) {

@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include "protocol/limits.hpp"
+#include "protocol/meshopt_codec.hpp"
 #include "protocol/message.hpp"
 #include "protocol/tile_codec.hpp"
+#include "tests/unit/protocol/sample_mesh.hpp"
 
 namespace talus::protocol {
 namespace {
@@ -82,6 +84,17 @@ TEST(Spec, ShowsTilesThatDecodeToWhatItSaysAndEncodeToWhatItShows) {
   EXPECT_EQ(density->tile.densities, (std::vector<std::int16_t>{-300, -290, -310, -301, -40, -30, 5, 200}));
   EXPECT_EQ(density->tile.materials, (std::vector<std::uint8_t>{7, 7, 8, 7, 3, 3, 255, 255}));
   EXPECT_EQ(encode_density(density->tile, density->key), density_bytes);
+}
+
+TEST(Spec, ShowsAMeshThatDecodesToWhatItSays) {
+  const std::vector<std::byte> bytes = hex_block(spec(), "mesh");
+  ASSERT_EQ(bytes.size(), 119U);
+  const MeshLattice lattice = mesh_lattice({2, 0, 0, 0}, 2, 1.0);
+  const auto mesh = decode_meshopt(bytes, lattice);
+  ASSERT_TRUE(mesh);
+  const std::vector<Face> faces{{{{0, 70, 0, 7, 128}, {0, 90, 64, 8, 0}, {64, 80, 0, 7, 130}}}};
+  EXPECT_EQ(faces_of(*mesh), faces);
+  EXPECT_EQ(encode_meshopt(*mesh, lattice), bytes);
 }
 
 TEST(Spec, NamesTheLimitsOfTheCode) {

@@ -98,6 +98,7 @@ export class Connection {
   constructor(
     private readonly url: string,
     private readonly world: string,
+    private readonly formats: string[], // by preference
     private readonly events: ConnectionEvents,
   ) {
     setInterval(() => this.payCredit(), kCreditEvery_ms);
@@ -170,7 +171,7 @@ export class Connection {
         versionHigh: kVersionHigh,
         world: this.world,
         token: pageToken,
-        formats: ['drc'],
+        formats: this.formats,
         creditBytes: kCreditBytes,
         client: 'talus-viewer',
       }),

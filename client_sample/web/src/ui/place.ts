@@ -8,6 +8,7 @@ export interface Place {
   nearM: number; // LOD 0 reaches this far
   hud: boolean;
   world: string | null;
+  formats: string[]; // that chunks may come in, by preference
   sunAzimuth: number; // degrees clockwise from north
   sunHeight: number;
   samples: number; // of multisampling
@@ -38,6 +39,7 @@ export function placeFromQuery(text: string): Place {
     nearM: number(query, 'near', 128, 112, 512),
     hud: query.get('hud') !== '0',
     world: query.get('world'),
+    formats: query.get('format') === 'mesh' ? ['mesh', 'drc'] : ['drc'],
     sunAzimuth: number(query, 'azimuth', 118, -360, 360),
     sunHeight: number(query, 'sun', 30, 6, 85),
     samples: Math.round(number(query, 'samples', 4, 0, 8)),

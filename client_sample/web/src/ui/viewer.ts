@@ -70,7 +70,7 @@ export class Viewer {
       toggleMap: () => this.map?.toggle(),
       jump: () => jump(this.body, this.ground),
     });
-    this.stream = new WorldStream<ChunkMesh>(streamUrl, manifest, {
+    this.stream = new WorldStream<ChunkMesh>(streamUrl, manifest, place.formats, {
       create: (key, shape, packed) => new ChunkMesh(key, shape, packed, false),
       createStrip: (strip, shape, packed) => new ChunkMesh(strip.key, shape, packed, true),
       show: (chunk) => renderer.terrain.show(chunk),

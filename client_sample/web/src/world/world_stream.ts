@@ -46,12 +46,13 @@ export class WorldStream<Mesh extends PlacedSurface> {
   constructor(
     url: string,
     manifest: WorldManifest,
+    formats: string[],
     private readonly events: StreamEvents<Mesh>,
   ) {
     this.shape = manifest.shape;
     this.store = new ChunkStore<Mesh>(events);
     this.pool = new DecodePool((why) => this.fault(why));
-    this.connection = new Connection(url, manifest.name, {
+    this.connection = new Connection(url, manifest.name, formats, {
       state: (state) => events.state(state),
       welcome: (worldHash) => this.welcome(worldHash),
       accepted: (sequence, view) => this.accepted(sequence, view),

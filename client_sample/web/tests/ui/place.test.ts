@@ -13,6 +13,12 @@ test.each(['at=1,2', 'at=1,2,x', 'at=,,', 'at=1,2,NaN', 'at=1,2,Infinity'])('%s 
   expect(placeFromQuery(`?${query}`).at).toBeNull();
 });
 
+test('chunks come as Draco unless the query asks for meshes', () => {
+  expect(placeFromQuery('?far=900').formats).toEqual(['drc']);
+  expect(placeFromQuery('?format=obj').formats).toEqual(['drc']);
+  expect(placeFromQuery('?format=mesh').formats).toEqual(['mesh', 'drc']);
+});
+
 test('values beyond their limits are brought to them', () => {
   expect(placeFromQuery('?far=1e99').farM).toBe(32_768);
   expect(placeFromQuery('?pitch=-1000').pitch).toBe(-89);
