@@ -122,10 +122,10 @@ TEST(MeshoptCodec, RefusesEveryStrictPrefixAndWhatIsTooLong) {
 TEST(MeshoptCodec, RefusesCountsAndPlacesThatNoChunkHas) {
   const auto original = *encode_meshopt(sample_surface(16, 5), kSmall);
   for (const std::size_t at : {12U, 16U, 20U}) {
-    for (const std::uint8_t value : {0x00, 0xFF}) {
+    for (const unsigned value : {0x00U, 0xFFU}) {
       auto bytes = original;
       for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<std::byte>(value);
-      EXPECT_EQ(decode_meshopt(bytes, kSmall).error(), CodecError::kMalformed) << at << ' ' << int{value};
+      EXPECT_EQ(decode_meshopt(bytes, kSmall).error(), CodecError::kMalformed) << at << ' ' << value;
     }
   }
   LatticeVertex vertex = pack_vertex({1024, 1024, 1000}, {0, 1, 0}, 0, 0);
