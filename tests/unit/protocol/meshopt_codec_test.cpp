@@ -35,8 +35,9 @@ TEST(MeshoptCodec, CarriesChunksAndStripsOfTheWorld) {
   ChunkScratch scratch;
   ChunkMesh mesh;
   int strips = 0;
-  const ChunkKey key{4, 5, 0, 5};
-  ASSERT_EQ(build_chunk(world, key, scratch, mesh), ChunkKind::kMesh);
+  ChunkKey key{4, 5, -2, 5};
+  while (key.y < 5 && build_chunk(world, key, scratch, mesh) != ChunkKind::kMesh) ++key.y;
+  ASSERT_LT(key.y, 5) << "some chunk of the stack holds the surface";
   const MeshLattice lattice = mesh_lattice(key, world.cells(), world.voxel_m());
   const auto chunk = decode_surface(*encode_meshopt(mesh, lattice), lattice);
   ASSERT_TRUE(chunk);
