@@ -61,7 +61,9 @@ describe('the world as 3D Tiles', () => {
           `${base}/${engine}.html?error=${error}&heading=0.6&pitch=-0.6&eye=${eye}&tileset=${encodeURIComponent(url)}`,
           { width: 256, height: 160 },
         );
-        const opened = { page, faults, state: () => page.evaluate(() => window.view?.() ?? null) };
+        // Until the page's script has run, `window.view` is the element of that id.
+        const read = () => (typeof window.view === 'function' ? window.view() : null);
+        const opened = { page, faults, state: () => page.evaluate(read) };
         const state = await until(opened, 'the view is complete', (view) => view.complete, completeMs);
         const seen = await look(page);
         await screenshot(opened, `${engine}_${name.replaceAll(' ', '_')}`);
