@@ -17,9 +17,9 @@ namespace talus::cli {
 namespace {
 
 /// Voxels along the block's edges: what a picture of 200 m sees at any angle, from below the sea to above cliffs.
-constexpr int kEdge = 288;
-constexpr int kHeight = 144;
-constexpr int kBottom = -16;
+constexpr int kPictureEdge = 288;
+constexpr int kPictureHeight = 144;
+constexpr int kPictureBottom = -16;
 /// Rays step this many voxels; a surface thinner than that may be missed.
 constexpr double kStep = 0.6;
 /// Where the sun stands: to the right, up and towards the eye, so that every view is lit from the side.
@@ -35,17 +35,17 @@ class Block {
  public:
   Block(const WorldFunction& world, glm::dvec3 middle_m, const glm::dvec3& sun) : world_(world), sun_(sun) {
     const glm::i64vec3 middle(glm::floor(middle_m / world.voxel_m()));
-    samples_ = {{middle.x - kEdge / 2, kBottom, middle.z - kEdge / 2}, kEdge, kHeight, kEdge, {}, {}, {}, {}};
+    samples_ = {{middle.x - kPictureEdge / 2, kPictureBottom, middle.z - kPictureEdge / 2}, kPictureEdge, kPictureHeight, kPictureEdge, {}, {}, {}, {}};
     DensityBrick brick;
     sample_block(world, brick, samples_);
   }
 
   bool holds(const glm::dvec3& p) const {
-    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < kEdge - 1 && p.y < kHeight - 1 && p.z < kEdge - 1;
+    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < kPictureEdge - 1 && p.y < kPictureHeight - 1 && p.z < kPictureEdge - 1;
   }
 
   double density(const glm::dvec3& place) const {
-    const glm::dvec3 p = glm::clamp(place, glm::dvec3(0), glm::dvec3(kEdge - 1.001, kHeight - 1.001, kEdge - 1.001));
+    const glm::dvec3 p = glm::clamp(place, glm::dvec3(0), glm::dvec3(kPictureEdge - 1.001, kPictureHeight - 1.001, kPictureEdge - 1.001));
     const glm::ivec3 cell(p);
     std::array<float, 8> corners{};
     for (int c = 0; c < 8; ++c) {
@@ -74,8 +74,8 @@ class Block {
 
   glm::vec3 colour(const glm::dvec3& p, const glm::dvec3& normal) const {
     const glm::ivec3 cell(p);
-    const std::size_t column = static_cast<std::size_t>(cell.z) * kEdge + static_cast<std::size_t>(cell.x);
-    const auto height = static_cast<float>((p.y + kBottom) * world_.voxel_m());
+    const std::size_t column = static_cast<std::size_t>(cell.z) * kPictureEdge + static_cast<std::size_t>(cell.x);
+    const auto height = static_cast<float>((p.y + kPictureBottom) * world_.voxel_m());
     const glm::i64vec2 voxel{samples_.corner_voxel.x + cell.x, samples_.corner_voxel.z + cell.z};
     if (normal.y > 0.75 && height > samples_.height_m[column] - 2) return light_of(0x6B7A45);
     const RockPlace place{samples_.stack_m[column], samples_.choice[column], height, voxel};
@@ -87,7 +87,7 @@ class Block {
 
   /// Light that reaches a place, and its colour. Where the block's border cuts rock there is no surface to light.
   glm::vec3 shade(const glm::dvec3& p) const {
-    if (std::min({p.x, p.z, kEdge - 1 - p.x, kEdge - 1 - p.z}) < 1)
+    if (std::min({p.x, p.z, kPictureEdge - 1 - p.x, kPictureEdge - 1 - p.z}) < 1)
       return colour(glm::max(p, glm::dvec3(0)), {}) * 0.6f;
     const auto slope = [&](const glm::dvec3& side) { return density(p + side) - density(p - side); };
     const glm::dvec3 gradient(slope({0.8, 0, 0}), slope({0, 0.8, 0}), slope({0, 0, 0.8}));
@@ -111,7 +111,7 @@ class Block {
 
 glm::vec3 pixel(const Block& block, const glm::dvec3& from, const glm::dvec3& direction, double reach, double rise) {
   const auto rock = block.first_rock(from, direction, 0, reach);
-  const double sea = direction.y < 0 ? (-kBottom - from.y) / direction.y : reach;
+  const double sea = direction.y < 0 ? (-kPictureBottom - from.y) / direction.y : reach;
   const glm::vec3 sky = glm::mix(kSkyLow, kSkyHigh, static_cast<float>(std::clamp(rise, 0.0, 1.0)));
   if (rock && glm::dot(*rock - from, direction) < sea) return block.shade(*rock);
   if (sea >= reach) return sky;
@@ -132,9 +132,9 @@ Picture draw_block(const WorldFunction& world, const BlockView& view, int width,
   const glm::dvec3 right(std::cos(yaw), 0, -std::sin(yaw));
   const glm::dvec3 up = glm::cross(right, forward);
   const Block block(world, view.middle_m, glm::normalize(right * kSun.x + glm::dvec3(0, kSun.y, 0) - forward * kSun.z));
-  const glm::dvec3 middle(kEdge / 2.0, view.middle_m.y / world.voxel_m() - kBottom, kEdge / 2.0);
+  const glm::dvec3 middle(kPictureEdge / 2.0, view.middle_m.y / world.voxel_m() - kPictureBottom, kPictureEdge / 2.0);
   const double scale = view.width_m / world.voxel_m() / width;
-  constexpr double kReach = 2.0 * kEdge;
+  constexpr double kReach = 2.0 * kPictureEdge;
   for_each_strip("block", height, [&](int k, int) {
     std::uint8_t* rgb = &out.rgb[static_cast<std::size_t>(k) * static_cast<std::size_t>(width) * 3];
     for (int i = 0; i < width; ++i) {

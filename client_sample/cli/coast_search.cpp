@@ -15,11 +15,11 @@ namespace talus::cli {
 namespace {
 
 /// Edge of a block, and its lowest and highest voxel: from below the notch to above the highest cliffs.
-constexpr int kBlock = 192;
-constexpr int kBottom = -8;
-constexpr int kHeight = 128;
+constexpr int kSearchEdge = 192;
+constexpr int kSearchBottom = -8;
+constexpr int kSearchHeight = 128;
 /// The slice that is searched: 2 m above the sea.
-constexpr int kSlice = 2 - kBottom;
+constexpr int kSlice = 2 - kSearchBottom;
 constexpr int kOverhangGap = 2;
 /// A cliff rises this much within this distance.
 constexpr int kCliffRise = 10;
@@ -62,7 +62,7 @@ glm::i64vec2 shore_near(const WorldFunction& world, const SurveyGrid& grid, glm:
 }
 
 void count_block(const WorldFunction& world, glm::i64vec2 middle, DensityBrick& brick, BlockCount& out) {
-  WorldBlock samples{{middle.x - kBlock / 2, kBottom, middle.y - kBlock / 2}, kBlock, kHeight, kBlock, {}, {}, {}, {}};
+  WorldBlock samples{{middle.x - kSearchEdge / 2, kSearchBottom, middle.y - kSearchEdge / 2}, kSearchEdge, kSearchHeight, kSearchEdge, {}, {}, {}, {}};
   sample_block(world, brick, samples);
   const RockBlock block = rock_of(samples);
   out.shore = coast_cells(block, kSlice);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <memory>
 #include <vector>
 
@@ -10,6 +9,7 @@
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/flight.hpp"
+#include "client_sample/cli/interrupt.hpp"
 #include "client_sample/cli/reach_server.hpp"
 #include "client_sample/cli/text.hpp"
 #include "client_sample/library/http_get.hpp"
@@ -27,8 +27,6 @@ constexpr std::chrono::milliseconds kTick{100};
 constexpr double kViewerSpacing_m = 300.0;
 /// Above the standing place a flight without --from begins at.
 constexpr double kEyes_m = 2.0;
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct Path {
   glm::dvec3 from{};
@@ -176,7 +174,7 @@ double fly_until_done(client::Loop& loop, Flights& flights, const FlyOptions& op
     const Total now = total_of(flights);
     const bool is_complete = options.until_complete && now.complete + now.failed == flights.size();
     const bool all_over = std::ranges::all_of(flights, [](const auto& flight) { return flight->is_over(); });
-    if (seconds >= options.seconds || is_complete || all_over || interrupted != 0) return seconds;
+    if (seconds >= options.seconds || is_complete || all_over || is_interrupted()) return seconds;
     if (seconds >= next_line) {
       print_line(now, before, seconds, flights.size());
       before = now;
@@ -198,7 +196,7 @@ ExitCode fly(const FlyOptions& options) {
   if (!server) return server.error();
   const auto path = path_of(options, *server);
   if (!path) return kUsage;
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  catch_interrupt();
 
   client::Loop loop;
   Flights flights = take_off(loop, options, *server);

@@ -1,17 +1,14 @@
 // talus load: many clients at once, what they measured, and what they found wrong.
-#include <csignal>
-
 #include <fmt/format.h>
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
+#include "client_sample/cli/interrupt.hpp"
 #include "client_sample/cli/reach_server.hpp"
 #include "client_sample/load/run.hpp"
 
 namespace talus::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 /// One of the server's doors, reached as the options say; what is wrong with the URL has been said.
 std::optional<client::ServerAddress> address_of(const LoadOptions& options, const std::string& url) {
@@ -55,8 +52,8 @@ ExitCode load(const LoadOptions& options) {
     run.admin = address_of(options, options.metrics);
     if (!run.admin) return kUsage;
   }
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  run.is_over = [](const load::Report&) { return interrupted != 0; };
+  catch_interrupt();
+  run.is_over = [](const load::Report&) { return is_interrupted(); };
   run.on_line = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
 
   const auto report = load::run(*scenario, run);

@@ -16,7 +16,7 @@ glm::dvec3 place(const ChunkMesh& mesh, std::size_t i, const protocol::MeshLatti
   return corner + glm::dvec3(mesh.positions[i]) * lattice.step_m;
 }
 
-std::uint32_t colour(const ChunkMesh& mesh, std::size_t i) {
+std::uint32_t vertex_colour(const ChunkMesh& mesh, std::size_t i) {
   const std::size_t material = mesh.materials[i];
   return kMaterials[material < kMaterials.size() ? material : 0].colour_rgb;
 }
@@ -33,7 +33,7 @@ std::string encode_obj(const ChunkMesh& mesh, const protocol::MeshLattice& latti
   auto at = std::back_inserter(out);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::dvec3 p = place(mesh, i, lattice, corner_m);
-    const std::uint32_t rgb = colour(mesh, i);
+    const std::uint32_t rgb = vertex_colour(mesh, i);
     fmt::format_to(at, "v {} {} {} {:.4f} {:.4f} {:.4f}\n", p.x, p.y, p.z, (rgb >> 16 & 0xFF) / 255.0,
                    (rgb >> 8 & 0xFF) / 255.0, (rgb & 0xFF) / 255.0);
   }
@@ -59,7 +59,7 @@ std::string encode_ply(const ChunkMesh& mesh, const protocol::MeshLattice& latti
     const glm::dvec3 p = place(mesh, i, lattice, corner_m);
     put(out, p.x), put(out, p.y), put(out, p.z);
     put(out, mesh.normals[i].x), put(out, mesh.normals[i].y), put(out, mesh.normals[i].z);
-    const std::uint32_t rgb = colour(mesh, i);
+    const std::uint32_t rgb = vertex_colour(mesh, i);
     for (const int shift : {16, 8, 0}) put(out, static_cast<std::uint8_t>(rgb >> shift & 0xFF));
     put(out, mesh.materials[i]), put(out, mesh.ridges[i]);
   }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <csignal>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
+#include "client_sample/cli/interrupt.hpp"
 #include "client_sample/cli/pregen_plan.hpp"
 #include "client_sample/cli/text.hpp"
 #include "client_sample/library/http_get.hpp"
@@ -30,8 +30,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kProgressBytesMax = 4096;
 /// A batch takes a server seconds; one without a single chunk in this time is a server that has stopped.
 constexpr double kSilent_s = 120;
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct Area {
   glm::dvec2 centre{};
@@ -195,7 +193,7 @@ ExitCode pregen(const PregenOptions& options) {
   const auto began_at = file.load();
   if (!began_at) return began_at.error();
 
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  catch_interrupt();
   client::Loop loop;
   client::StreamOptions stream;
   stream.server = *server;
@@ -207,7 +205,7 @@ ExitCode pregen(const PregenOptions& options) {
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
   std::uint64_t stored = *began_at;
   double next_line = 1;
-  while (interrupted == 0 && seconds() < options.seconds && pregen.step()) {
+  while (!is_interrupted() && seconds() < options.seconds && pregen.step()) {
     if (pregen.done() != stored && !file.store(stored = pregen.done())) return kFailed;
     if (seconds() < next_line) continue;
     print_progress(pregen, *began_at, seconds());

@@ -7,7 +7,7 @@ namespace talus::cli {
 namespace {
 
 /// Columns along the edge of a block.
-constexpr std::int64_t kBlock = 8;
+constexpr std::int64_t kBlockColumns = 8;
 
 std::int32_t chunk_at(double metres, double edge_m) {
   constexpr double kLimit = kChunkLimit;
@@ -41,10 +41,10 @@ PregenPlan::PregenPlan(const protocol::WorldShape& shape, glm::dvec2 centre, dou
 /// Moves on to the next block; false behind the last.
 bool PregenPlan::begin_block() {
   in_block_ = 0;
-  block_x_ += kBlock;
+  block_x_ += kBlockColumns;
   if (block_x_ <= squares_[square_].x_high) return true;
   block_x_ = squares_[square_].x_low;
-  block_z_ += kBlock;
+  block_z_ += kBlockColumns;
   if (block_z_ <= squares_[square_].z_high) return true;
   if (++square_ == squares_.size()) return false;
   block_x_ = squares_[square_].x_low;
@@ -55,12 +55,12 @@ bool PregenPlan::begin_block() {
 std::optional<PregenPlan::Column> PregenPlan::next() {
   while (square_ < squares_.size()) {
     const Square& square = squares_[square_];
-    if (in_block_ == kBlock * kBlock) {
+    if (in_block_ == kBlockColumns * kBlockColumns) {
       if (!begin_block()) break;
       continue;
     }
-    const std::int64_t x = block_x_ + in_block_ % kBlock;
-    const std::int64_t z = block_z_ + in_block_ / kBlock;
+    const std::int64_t x = block_x_ + in_block_ % kBlockColumns;
+    const std::int64_t z = block_z_ + in_block_ / kBlockColumns;
     ++in_block_;
     if (x <= square.x_high && z <= square.z_high) {
       return Column{square.lod, static_cast<std::int32_t>(x), static_cast<std::int32_t>(z)};

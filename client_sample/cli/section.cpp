@@ -16,12 +16,12 @@
 namespace talus::cli {
 namespace {
 
-constexpr int kEdgeMin = 64;  // pixels
-constexpr int kEdgeMax = 8192;
+constexpr int kSectionEdgeMin = 64;  // pixels
+constexpr int kSectionEdgeMax = 8192;
 constexpr double kLengthMin = 10;  // metres
 constexpr double kLengthMax = 1.0e6;
-constexpr double kPlaceMax = 1.0e10;
-constexpr double kHeightMax = 10'000;
+constexpr double kSectionPlaceMax_m = 1.0e10;
+constexpr double kSectionHeightMax_m = 10'000;
 constexpr int kStripColumns = 16;
 /// Columns that tell how high the ground along a cut reaches.
 constexpr int kProbes = 400;
@@ -29,7 +29,7 @@ constexpr int kProbes = 400;
 std::optional<SectionView> view_of(const SectionOptions& options) {
   const auto from = parse_pair(options.from);
   const auto to = parse_pair(options.to);
-  const auto is_near = [](const glm::dvec2& p) { return std::abs(p.x) <= kPlaceMax && std::abs(p.y) <= kPlaceMax; };
+  const auto is_near = [](const glm::dvec2& p) { return std::abs(p.x) <= kSectionPlaceMax_m && std::abs(p.y) <= kSectionPlaceMax_m; };
   const double length = from && to ? glm::length(*to - *from) : 0;
   if (!from || !to || !is_near(*from) || !is_near(*to) || length < kLengthMin || length > kLengthMax) {
     fmt::print(stderr, "talus: --from and --to are x,z in metres, within +-1e10 and {} m to {} km apart, as -2000,0\n",
@@ -37,15 +37,15 @@ std::optional<SectionView> view_of(const SectionOptions& options) {
     return std::nullopt;
   }
   const auto size = parse_size(options.size);
-  if (!size || std::min(size->x, size->y) < kEdgeMin || std::max(size->x, size->y) > kEdgeMax) {
-    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kEdgeMin, kEdgeMax);
+  if (!size || std::min(size->x, size->y) < kSectionEdgeMin || std::max(size->x, size->y) > kSectionEdgeMax) {
+    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kSectionEdgeMin, kSectionEdgeMax);
     return std::nullopt;
   }
   SectionView view{*from, *to, 0, 0, size->x, size->y};
   if (options.heights.empty()) return view;
   const auto heights = parse_pair(options.heights);
-  if (!heights || heights->x >= heights->y || std::abs(heights->x) > kHeightMax || std::abs(heights->y) > kHeightMax) {
-    fmt::print(stderr, "talus: \"{}\" are no heights: low,high in metres within +-{}\n", options.heights, kHeightMax);
+  if (!heights || heights->x >= heights->y || std::abs(heights->x) > kSectionHeightMax_m || std::abs(heights->y) > kSectionHeightMax_m) {
+    fmt::print(stderr, "talus: \"{}\" are no heights: low,high in metres within +-{}\n", options.heights, kSectionHeightMax_m);
     return std::nullopt;
   }
   view.low_m = heights->x;

@@ -10,8 +10,8 @@
 namespace talus::cli {
 namespace {
 
-constexpr int kEdge = 1024;
-constexpr int kBlock = 128;  // columns a strip evaluates at a time
+constexpr int kSurveyEdge = 1024;
+constexpr int kStripColumns = 128;  // columns a strip evaluates at a time
 /// Creases of the ridge map below this carry water.
 constexpr float kStream = -0.6f;
 constexpr int kLandProbes = 600;
@@ -135,7 +135,7 @@ void overhangs(const WorldFunction& world, const SurveyGrid& grid, SurveyFigures
 
 SurveyGrid survey_grid(const WorldFunction& world, const MapArea& area) {
   std::int64_t step = 1;
-  while (static_cast<double>(step) * world.voxel_m() * kEdge * 1.4 < area.edge_m) step *= 2;
+  while (static_cast<double>(step) * world.voxel_m() * kSurveyEdge * 1.4 < area.edge_m) step *= 2;
   SurveyGrid out;
   out.spacing_m = static_cast<double>(step) * world.voxel_m();
   out.edge = std::max(64, static_cast<int>(area.edge_m / out.spacing_m));
@@ -147,12 +147,12 @@ SurveyGrid survey_grid(const WorldFunction& world, const MapArea& area) {
   out.height_m.resize(out.index(0, out.edge));
   out.ridge.resize(out.height_m.size());
   std::vector<ColumnBlock> blocks(static_cast<std::size_t>(strip_workers()));
-  for_each_strip("survey", (out.edge + kBlock - 1) / kBlock, [&](int strip, int worker) {
+  for_each_strip("survey", (out.edge + kStripColumns - 1) / kStripColumns, [&](int strip, int worker) {
     ColumnBlock& block = blocks[static_cast<std::size_t>(worker)];
-    const int k0 = strip * kBlock;
-    for (int i0 = 0; i0 < out.edge; i0 += kBlock) {
-      const int width = std::min(kBlock, out.edge - i0);
-      const int depth = std::min(kBlock, out.edge - k0);
+    const int k0 = strip * kStripColumns;
+    for (int i0 = 0; i0 < out.edge; i0 += kStripColumns) {
+      const int width = std::min(kStripColumns, out.edge - i0);
+      const int depth = std::min(kStripColumns, out.edge - k0);
       world.columns({corner_voxel.x + i0 * step, corner_voxel.y + k0 * step, step, width, depth, world.voxel_m()},
                     block);
       for (int k = 0; k < depth; ++k) {

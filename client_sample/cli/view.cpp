@@ -12,23 +12,23 @@
 namespace talus::cli {
 namespace {
 
-constexpr int kEdgeMin = 16;  // pixels
-constexpr int kEdgeMax = 4096;
-constexpr double kPlaceMax = 1.0e9;
-constexpr double kHeightMax = 128;  // what a block reaches
+constexpr int kViewEdgeMin = 16;  // pixels
+constexpr int kViewEdgeMax = 4096;
+constexpr double kViewPlaceMax_m = 1.0e9;
+constexpr double kViewHeightMax_m = 128;  // what a block reaches
 
 }  // namespace
 
 ExitCode view(const ViewOptions& options) {
   const auto at = parse_place(options.at);
-  if (!at || std::abs(at->x) > kPlaceMax || std::abs(at->z) > kPlaceMax || std::abs(at->y) > kHeightMax) {
+  if (!at || std::abs(at->x) > kViewPlaceMax_m || std::abs(at->z) > kViewPlaceMax_m || std::abs(at->y) > kViewHeightMax_m) {
     fmt::print(stderr, "talus: --at is x,y,z in metres, x and z within +-1e9, y within +-{}, as 4830,20,39285\n",
-               kHeightMax);
+               kViewHeightMax_m);
     return kUsage;
   }
   const auto size = parse_size(options.size);
-  if (!size || std::min(size->x, size->y) < kEdgeMin || std::max(size->x, size->y) > kEdgeMax) {
-    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kEdgeMin, kEdgeMax);
+  if (!size || std::min(size->x, size->y) < kViewEdgeMin || std::max(size->x, size->y) > kViewEdgeMax) {
+    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kViewEdgeMin, kViewEdgeMax);
     return kUsage;
   }
   const auto manifest = load_manifest(options.manifest);

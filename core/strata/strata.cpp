@@ -136,6 +136,7 @@ Strata::Strata(const StrataControls& controls)
 
 void Strata::tabulate(const LayerSet& set) {
   std::vector<float> depths;
+  depths.reserve(kSlicesPerSet);
   for (int slice = 0; slice < kSlicesPerSet; ++slice) {
     depths.push_back((static_cast<float>(slice) + 0.5f) / kSlicesPerMetre);
   }

@@ -1,234 +1,31 @@
-// The table of every world parameter: name, unit, limits, default, whole numbers only, meaning. Order is canonical.
+// The table of every world parameter, in canonical order: a file a theme, one after the other.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "core/world/manifest.hpp"
+#include "core/world/parameters_cover.hpp"
+#include "core/world/parameters_ground.hpp"
+#include "core/world/parameters_landforms.hpp"
+#include "core/world/parameters_volume.hpp"
 
 namespace talus {
 
-// clang-format off
-inline constexpr std::array kManifestTable = std::to_array<ParameterInfo>({
-  {"chunk.cells", "cells", 16, 32, 32, true, "Cells along a chunk's edge, 16 or 32: more means fewer and larger payloads."},
-  {"chunk.voxel_m", "m", 0.25, 4, 1, false, "Edge of a LOD 0 cell, a power of two: less means finer terrain and more chunks."},
+namespace detail {
 
-  {"world.wrap_m", "m", 0, 1e9, 0, false, "East-west period after which the world repeats, a multiple of 131072 m; 0 for none: more means a wider way around it, less lets one come home sooner."},
+template <std::size_t... kCounts>
+constexpr auto joined(const std::array<ParameterInfo, kCounts>&... themes) {
+  std::array<ParameterInfo, (kCounts + ...)> all{};
+  auto out = all.begin();
+  ((out = std::ranges::copy(themes, out).out), ...);
+  return all;
+}
 
-  {"plates.size_m", "m", 4096, 131072, 16384, true, "Edge of the cell that holds a plate: more means larger plates, longer ranges and wider plains."},
-  {"plates.jitter", "", 0, 0.9, 0.86, false, "How far plates stray from a square grid: more means plates of many shapes, less means squares."},
-  {"plates.big_share", "", 0, 1, 0.3, false, "Share of 2x2 cells that hold one plate instead of four: more means more large plates among small ones."},
-  {"plates.continent_m", "m", 4000, 1000000, 92000, false, "Wavelength of continents and oceans: more means plates of a kind keep together over longer distances."},
-  {"plates.scatter", "", 0, 2, 0.42, false, "How much chance makes land or sea of a single plate: more means inland seas and lone islands, less means compact continents."},
-  {"plates.ocean", "", 0.05, 0.95, 0.53, false, "Where between land and sea the line is drawn: more means more sea, less means more land."},
-  {"plates.group_speed", "", 0, 3, 1, false, "Speed of plates that move together: more means higher ranges and deeper rifts between groups, less leaves hills."},
-  {"plates.own_speed", "", 0, 3, 0.25, false, "Speed of each plate within its group: more means ranges around single plates, less means calm interiors."},
-  {"plates.wiggle", "", 0, 0.4, 0.17, false, "How far a fault strays from a straight line, as a share of its length: more means winding coasts and ranges."},
-  {"plates.wiggle_m", "m", 500, 50000, 5200, false, "Wavelength of a fault's largest bends: more means long curves, less means zigzags."},
-  {"plates.blend_m", "m", 20, 350, 260, false, "Half width over which one plate's ground passes into the next one's: more softens faults and vertices, less sharpens them."},
+}  // namespace detail
 
-  {"macro.land_m", "m", 20, 1500, 205, false, "Mean height of continental plates: more means higher plains and steeper coastal plains."},
-  {"macro.land_range_m", "m", 0, 600, 165, false, "How far continental plates lie above and below that: more means uplands and lowlands, and lakes where they sink."},
-  {"macro.sea_floor_m", "m", -2000, -50, -350, false, "Mean height of oceanic plates: less means deeper seas and steeper continental slopes."},
-  {"macro.sea_range_m", "m", 0, 500, 110, false, "How far oceanic plates lie above and below that: more means shallow and deep basins side by side."},
-  {"macro.collision_m", "m", 0, 4000, 1700, false, "Crest where two continents close in at full speed: more means higher mountains."},
-  {"macro.subduction_m", "m", 0, 4000, 1270, false, "Crest of ranges along coasts under which sea floor dives: more means higher mountains near the sea."},
-  {"macro.arc_m", "m", 0, 2000, 610, false, "Crest of island arcs above the sea floor: more means larger islands, less leaves shoals."},
-  {"macro.ocean_ridge_m", "m", 0, 1000, 230, false, "Height of ridges where sea floor parts: more means shallower ridges."},
-  {"macro.rift_m", "m", 0, 1500, 300, false, "Height of shoulders and depth of valleys where continents part: more means deeper rift lakes."},
-  {"macro.old_fault_m", "m", 0, 2000, 350, false, "Height of the highest hills along faults at rest: more means old mountains inland, less means plains."},
-  {"macro.trench_m", "m", 0, 2000, 330, false, "Depth of trenches where sea floor dives: more means deeper ones."},
-  {"macro.range_width", "", 0.3, 3, 1, false, "Scale of the width of all that lies along faults: more means broad massifs with gentle flanks, less means narrow steep ones."},
-  {"macro.shelf_m", "m", 1000, 50000, 6000, false, "Width of shelf and coastal plain from the fault inland: more means gentle coasts and wide shelves."},
-  {"macro.shelf_depth_m", "m", 20, 1000, 150, false, "Depth at the outer edge of the shelf: more moves the shore inland."},
-  {"macro.continental_slope_m", "m", 500, 20000, 3200, false, "Width of the slope from shelf to sea floor: more means a gentler fall."},
-  {"macro.uplift_noise", "", 0, 0.75, 0.5, false, "How unevenly ranges rise along their crests: more means single massifs with gaps, less means walls."},
-  {"macro.pass_depth", "", 0, 0.9, 0.45, false, "Depth of valleys that cross ranges, as a share of the range: more means low passes, 0 none."},
-  {"macro.pass_wavelength_m", "m", 1000, 50000, 9000, false, "Wavelength of those valleys: more means they are wider and further apart."},
-  {"macro.swell_m", "m", 0, 500, 75, false, "Amplitude of broad rises and hollows of the land: more means rolling uplands and more lakes."},
-  {"macro.coast_m", "m", 0, 500, 125, false, "Amplitude of the noise that shapes the coast: more means bays, skerries and drowned valleys, less means smooth shores."},
-  {"macro.coast_wavelength_m", "m", 500, 50000, 6000, false, "Largest wavelength of that noise: more means larger bays."},
-
-  {"relief.wavelength_m", "m", 200, 20000, 3200, false, "Largest wavelength of hills: more means broader hills."},
-  {"relief.octaves", "", 1, 8, 4, true, "Octaves of hills: more adds finer hills, which makes gullies less orderly."},
-  {"relief.lacunarity", "", 1.5, 3, 2.03, false, "Frequency from one octave to the next: more spreads the octaves further apart."},
-  {"relief.gain", "", 0, 0.8, 0.28, false, "Amplitude from one octave to the next: above 0.4 gullies turn to wool."},
-  {"relief.base_m", "m", 0, 200, 22, false, "Amplitude of hills on plains: more makes plains rolling."},
-  {"relief.hill_m", "m", 0, 1500, 260, false, "Amplitude of hills where hilliness is 1: more means a rougher massif before erosion."},
-
-  {"erosion.scale_m", "m", 50, 10000, 1000, false, "Wavelength of the largest gullies: more means wider spurs and valleys."},
-  {"erosion.octaves", "", 0, 10, 7, true, "Octaves of gullies: more means finer branches; 0 turns erosion off."},
-  {"erosion.strength", "", 0, 1, 0.175, false, "Depth of gullies as a share of their scale: more means deeper valleys and steeper flanks."},
-  {"erosion.gain", "", 0.1, 0.9, 0.5, false, "Depth from one octave to the next: more means coarser fine branches."},
-  {"erosion.lacunarity", "", 1.5, 3, 2, false, "Frequency from one octave to the next: more means a wider jump between branch sizes."},
-  {"erosion.gully_weight", "", 0, 1, 0.5, false, "Share of gullies against pointed peaks: more means deeper gullies and rounder peaks."},
-  {"erosion.detail", "", 0.1, 5, 1.8, false, "How far fine gullies reach on to gentle slopes: less restricts them to steep ones."},
-  {"erosion.rounding_ridge", "", 0, 1, 0.05, false, "Rounding of ridges: more means softer crests."},
-  {"erosion.rounding_crease", "", 0, 1, 0.03, false, "Rounding of creases: more means valley floors filled with sediment."},
-  {"erosion.rounding_input", "", 0, 10, 0.1, false, "Rounding of the peaks and valleys that were there before: more means softer ones."},
-  {"erosion.rounding_octave", "", 0.5, 4, 2, false, "Rounding from one octave to the next: the lacunarity keeps one size at every octave, less makes fine gullies sharper."},
-  {"erosion.onset_input", "", 0.01, 10, 1.25, false, "Slope of the input at which gullies set in: more lets them begin on gentler slopes."},
-  {"erosion.onset_octave", "", 0.01, 10, 1.25, false, "Steepness of a gully's side at which finer ones set in: more lets them begin nearer its crest."},
-  {"erosion.ridge_onset_input", "", 0.01, 10, 2.8, false, "The same for the ridge map's input: more means thinner lines at peaks and valleys."},
-  {"erosion.ridge_onset_octave", "", 0.01, 10, 1.5, false, "The same for the ridge map's octaves: more means thinner drainage lines."},
-  {"erosion.assumed_slope", "", 0, 5, 0.7, false, "Slope that gully directions assume of the input: more makes branches leave at smaller angles."},
-  {"erosion.assumed_blend", "", 0, 1, 1, false, "Share of the assumed slope against the real one: less lets gullies overpower peaks and valleys."},
-  {"erosion.cell_scale", "", 0.2, 2, 0.7, false, "Stripes per cell: more means longer, more distorted gullies, less means grain."},
-  {"erosion.normalisation", "", 0, 0.99, 0.5, false, "How much stripes are brought to one depth: more means crisper gullies, near 1 spikes appear."},
-  {"erosion.offset", "", -1, 1, 0, false, "Lifts what erosion touched by this share of its magnitude: below 0 lowers it."},
-  {"erosion.frequency_share", "", 0, 1, 0, false, "Share of the frequency method everywhere: more means smoother valleys and rounder spurs, 0 leaves all to the fade method and its crisp gullies."},
-  {"erosion.frequency_slope", "", 0.1, 10, 2.4, false, "Frequency method: gullies per scale on a slope of 1; more means closer gullies on gentler ground, less leaves broad smooth flanks."},
-  {"erosion.frequency_max", "", 0.2, 5, 1.6, false, "Frequency method: gullies per scale that no slope passes; more lets walls splinter, less keeps them broad."},
-  {"erosion.frequency_branch", "", 0, 5, 1, false, "Frequency method: how far the sides of gullies turn finer ones; more branches at wider angles, 0 combs all downhill."},
-  {"erosion.frequency_pull", "", 0, 1, 0.8, false, "Frequency method: how far peaks and valley floors are parted; more means deeper troughs, 0 leaves them as the relief has them."},
-  {"erosion.frequency_valley", "", 0, 1, 1, false, "Frequency method: how far gullies give out towards valley floors; more means smooth floors, 0 lets gullies cross them."},
-  {"erosion.fade_altitude", "", 0, 2, 0.55, false, "How much altitude decides what is peak and what is valley: more sharpens peaks and valley floors."},
-  {"erosion.fade_relief", "", 0, 2, 0.75, false, "How much the hills decide what is peak and what is valley: more gives each hill its own peak."},
-  {"erosion.plain_strength", "", 0, 1, 0.06, false, "Erosion where hilliness is 0: more engraves plains."},
-  {"erosion.hill_strength", "", 0, 2, 0.85, false, "Erosion added where hilliness is 1: more means rougher ranges."},
-
-  {"strata.sets", "", 2, 64, 12, true, "Layer sets of the world: more means more kinds of country before one comes again."},
-  {"strata.set_m", "m", 500, 100000, 9000, false, "Wavelength at which layer sets change: more means wider countries of one rock."},
-  {"strata.facies_m", "m", 50, 20000, 600, false, "Wavelength at which a layer's rock changes: more means beds that stay of one rock for longer, less means patches."},
-  {"strata.deformation_m", "m", 0, 400, 120, false, "How far folds lift and lower the layers: more bends them more."},
-  {"strata.fold_m", "m", 200, 20000, 3500, false, "Wavelength of the largest folds: less means tighter ones."},
-  {"strata.tilt_m", "m", 0, 400, 240, false, "How far whole regions of layers tilt: more means steeper dips."},
-  {"strata.tilt_wavelength_m", "m", 2000, 100000, 14000, false, "Wavelength of the tilt: less means steeper dips."},
-  {"strata.ledge", "", 0, 1.8, 1.5, false, "How far hard layers stand proud: more means higher steps and wider benches, 0 none."},
-  {"strata.ledge_slope", "", 0.01, 2, 0.25, false, "Slope of the relief from which ledges show: less terraces gentle hills too."},
-  {"strata.district_m", "m", 500, 50000, 5200, false, "Wavelength of districts with and without ledges: more means wider ones."},
-  {"strata.resistance", "", 0, 1, 0.4, false, "How much hard rock withstands erosion: more means shallower gullies in it."},
-
-  {"cones.cell_m", "m", 3000, 100000, 8000, false, "Edge of the cells that hold a volcano, seamount or field of cinder cones each: more means rarer ones."},
-  {"cones.land_share", "", 0, 1, 0.22, false, "Share of cells on land with cones: more means more volcanoes, 0 none."},
-  {"cones.sea_share", "", 0, 1, 0.5, false, "Share of cells on the sea floor with cones: more means more seamounts, 0 none."},
-  {"cones.volcano_m", "m", 50, 1500, 850, false, "Height of the tallest volcanoes: more means taller and wider ones."},
-  {"cones.seamount_m", "m", 20, 1000, 288, false, "Height of seamounts: more lets the tallest rise from the sea as islands."},
-  {"cones.cinder_m", "m", 10, 200, 75, false, "Height of cinder cones: more means taller and wider ones."},
-
-  {"coast.cliff_m", "m", 0, 90, 52, false, "Height of sea cliffs: more means higher walls, 0 leaves every shore as erosion made it."},
-  {"coast.cliff_vary_m", "m", 0, 37, 34, false, "How much the height of cliffs varies along a coast: more means higher and lower ones side by side."},
-  {"coast.cliff_share", "", 0, 1, 0.65, false, "Share of the hilly coasts that end in cliffs: less leaves more of them to beaches."},
-  {"coast.cliff_slope", "", 0.005, 1, 0.07, false, "Slope of the hinterland from which a coast can be a cliff: less lets plains end in cliffs too."},
-  {"coast.district_m", "m", 500, 50000, 4500, false, "Wavelength of coasts with and without cliffs: more means longer stretches of one kind."},
-  {"coast.fin_m", "m", 0, 15, 11, false, "Amplitude of fins across a cliff coast: more means longer headlands and more stacks, 0 a smooth line."},
-  {"coast.fin_wavelength_m", "m", 20, 300, 64, false, "Distance from fin to fin: more means broader headlands and bays."},
-  {"coast.joint_m", "m", 0, 1.5, 1.1, false, "Depth of the joints in cliffs: more means stronger buttresses, 0 smooth walls."},
-  {"coast.shelf", "", 0.1, 1, 0.6, false, "Share of its depth that the sea floor below cliffs keeps: less means shallower water."},
-  {"coast.beach", "", 0, 1, 1, false, "How far gentle shores become beaches with bar, berm and dune foot: less leaves them as erosion made them."},
-
-  {"districts.wavelength_m", "m", 2000, 200000, 15000, false, "Wavelength of districts: more means wider badlands, dunes, tables and karst, further apart."},
-  {"districts.border", "", 0.01, 0.5, 0.09, false, "Half width of districts' borders in units of their noise: more means softer borders, less means sudden ones."},
-  {"districts.badlands", "", 0, 0.45, 0.15, false, "Share of low dry land that is badlands: more means more of it, 0 none."},
-  {"districts.dunes", "", 0, 0.45, 0.12, false, "Share of flat dry land under dunes: more means wider sand seas, 0 leaves none, behind beaches neither."},
-  {"districts.mesas", "", 0, 0.45, 0.15, false, "Share of low dry land that is tables and canyons: more means more of it, 0 none."},
-  {"districts.karst", "", 0, 0.45, 0.12, false, "Share of low land and shallow sea with karst towers: more means more of it, 0 none."},
-  {"districts.glacial", "", 0, 0.45, 0.4, false, "Share of high ranges that glaciers widened: more means more smooth troughs, 0 leaves all valleys sharp."},
-  {"districts.badland_hill_m", "m", 0, 300, 120, false, "Height of the hills of badlands: more means taller, steeper ones."},
-  {"districts.badland_wavelength_m", "m", 100, 5000, 1000, false, "Wavelength of the hills of badlands: more means broader ones."},
-  {"districts.rill_m", "m", 10, 1000, 190, false, "Wavelength of the largest rills in badlands, table land and karst: more means wider gullies, less means a finer texture."},
-  {"districts.rill_strength", "", 0, 1, 0.15, false, "Depth of rills as a share of their wavelength: more means deeper ones, 0 none."},
-  {"districts.rill_octaves", "", 0, 8, 5, true, "Octaves of rills: more means finer branches, 0 none."},
-  {"districts.mesa_m", "m", 0, 800, 220, false, "Height of tables over their canyons: more means higher walls."},
-  {"districts.mesa_wavelength_m", "m", 300, 20000, 2800, false, "Wavelength of tables: more means wider plateaus, less means lone buttes."},
-  {"districts.canyon_width", "", 0.02, 1, 0.2, false, "Width of canyons in units of their noise: more means wider valleys between tables, less means slots."},
-  {"districts.dune_m", "m", 0, 100, 22, false, "Height of large dunes: more means higher and steeper ones."},
-  {"districts.dune_wavelength_m", "m", 30, 3000, 260, false, "Wavelength of large dunes: more means wider and gentler ones."},
-  {"districts.dune_skew", "", 0, 0.9, 0.55, false, "How much steeper the lee side of a dune is: more means steeper slip faces, 0 makes both sides alike."},
-  {"districts.wind_m", "m", 1000, 500000, 24000, false, "Wavelength at which the wind that lays dunes turns: more means straighter sand seas."},
-  {"districts.karst_m", "m", 0, 500, 130, false, "Height of karst towers: more means taller, steeper ones."},
-  {"districts.karst_cell_m", "m", 30, 3000, 240, false, "Distance of karst towers: more means wider and further ones."},
-  {"districts.karst_towers", "", 0, 1, 0.6, false, "Share of places that hold a tower: more makes ridges of them, less leaves lone towers on a plain."},
-  {"districts.sink_m", "m", 0, 100, 16, false, "Depth of sinkholes between the towers: more means deeper ones, 0 none."},
-
-  {"warp.reach_m", "m", 0, 6, 4, false, "How far the hardest beds stand out of steep rock: more means deeper overhangs under them, 0 none."},
-  {"warp.slope_low", "", 0, 2, 0.25, false, "Slope of the land from which beds begin to stand out: less gives gentle hills a staircase."},
-  {"warp.slope_high", "", 0.05, 4, 1, false, "Slope from which they stand out fully: more keeps bold overhangs to cliffs."},
-  {"warp.patch_m", "m", 20, 2000, 120, false, "Wavelength of places where more and less of the beds shows: more means longer stretches of each."},
-
-  {"carve.union_m", "m", 0.1, 4, 1.2, false, "Width over which carved spheres flow into each other: more means smoother caves, less shows each sphere."},
-  {"carve.blend_m", "m", 0.1, 4, 1.6, false, "Width over which a carved wall rounds into the surface: less leaves sharp rims and crumbs, more softens all."},
-  {"carve.roughness_m", "m", 0, 2, 0.7, false, "Roughness of carved walls: more means craggier caves, 0 smooth ones."},
-
-  {"notch.cell_m", "m", 4, 64, 5, false, "Edge of the cells that hold one seed of a notch each: more means fewer notches."},
-  {"notch.probability", "", 0, 1, 0.85, false, "Chance that a seed is looked at: more means more notches, 0 none."},
-  {"notch.slope_min", "", 0.2, 8, 0.8, false, "Slope that the surface must have at a seed: more keeps notches to steeper walls."},
-  {"notch.elevation_low_m", "m", -50, 1500, -0.5, false, "Lowest elevation of a seed: less begins further down."},
-  {"notch.elevation_high_m", "m", -50, 1500, 1.8, false, "Highest elevation of a seed: more begins further up."},
-  {"notch.radius_low_m", "m", 1, 12, 1.9, false, "Radius of the smallest spheres: more leaves no narrow places."},
-  {"notch.radius_high_m", "m", 1, 12, 3.4, false, "Radius of the largest spheres: more means wider halls."},
-  {"notch.steps_low", "", 1, 16, 1, true, "Fewest steps of growth from a seed: more means none are shallow."},
-  {"notch.steps_high", "", 1, 16, 2, true, "Most steps of growth from a seed: more goes deeper into the rock."},
-  {"notch.spheres_low", "", 1, 6, 1, true, "Fewest spheres at each step: more means no single file."},
-  {"notch.spheres_high", "", 1, 6, 2, true, "Most spheres at each step: more means wider, more broken walls."},
-  {"notch.step_m", "m", 0.5, 8, 1.6, false, "Length of a step: more goes deeper, until spheres no longer touch."},
-  {"notch.fall", "", -0.5, 0.5, 0.05, false, "Metres down per metre inwards: more leads down, below 0 up."},
-  {"notch.end_radius", "", 0.2, 1.5, 1, false, "Radius of the last step over the first: less means pointed ends, above 1 wide ones."},
-  {"notch.jitter", "", 0, 1, 0.6, false, "How far a sphere is displaced, in its radii: more means more irregular shapes."},
-  {"notch.stretch", "", 0.3, 2.5, 0.75, false, "Height over width of a sphere: more means taller ones, less flatter ones."},
-  {"notch.roof_m", "m", 1, 30, 3, false, "Rock that must stay above: more keeps notches out of thin places."},
-
-  {"caves.cell_m", "m", 4, 64, 26, false, "Edge of the cells that hold one seed of a sea cave each: more means fewer sea caves."},
-  {"caves.probability", "", 0, 1, 0.4, false, "Chance that a seed is looked at: more means more sea caves, 0 none."},
-  {"caves.slope_min", "", 0.2, 8, 0.9, false, "Slope that the surface must have at a seed: more keeps sea caves to steeper walls."},
-  {"caves.elevation_low_m", "m", -50, 1500, 0, false, "Lowest elevation of a seed: less begins further down."},
-  {"caves.elevation_high_m", "m", -50, 1500, 4, false, "Highest elevation of a seed: more begins further up."},
-  {"caves.radius_low_m", "m", 1, 12, 3.2, false, "Radius of the smallest spheres: more leaves no narrow places."},
-  {"caves.radius_high_m", "m", 1, 12, 6.5, false, "Radius of the largest spheres: more means wider halls."},
-  {"caves.steps_low", "", 1, 16, 4, true, "Fewest steps of growth from a seed: more means none are shallow."},
-  {"caves.steps_high", "", 1, 16, 9, true, "Most steps of growth from a seed: more goes deeper into the rock."},
-  {"caves.spheres_low", "", 1, 6, 1, true, "Fewest spheres at each step: more means no single file."},
-  {"caves.spheres_high", "", 1, 6, 3, true, "Most spheres at each step: more means wider, more broken walls."},
-  {"caves.step_m", "m", 0.5, 8, 3.6, false, "Length of a step: more goes deeper, until spheres no longer touch."},
-  {"caves.fall", "", -0.5, 0.5, 0.06, false, "Metres down per metre inwards: more leads down, below 0 up."},
-  {"caves.end_radius", "", 0.2, 1.5, 0.55, false, "Radius of the last step over the first: less means pointed ends, above 1 wide ones."},
-  {"caves.jitter", "", 0, 1, 0.45, false, "How far a sphere is displaced, in its radii: more means more irregular shapes."},
-  {"caves.stretch", "", 0.3, 2.5, 1.25, false, "Height over width of a sphere: more means taller ones, less flatter ones."},
-  {"caves.roof_m", "m", 1, 30, 4, false, "Rock that must stay above: more keeps sea caves out of thin places."},
-
-  {"alcoves.cell_m", "m", 4, 64, 26, false, "Edge of the cells that hold one seed of an inland alcove each: more means fewer alcoves."},
-  {"alcoves.probability", "", 0, 1, 0.45, false, "Chance that a seed is looked at: more means more alcoves, 0 none."},
-  {"alcoves.slope_min", "", 0.2, 8, 1.1, false, "Slope that the surface must have at a seed: more keeps alcoves to steeper walls."},
-  {"alcoves.elevation_low_m", "m", -50, 1500, 8, false, "Lowest elevation of a seed: less begins further down."},
-  {"alcoves.elevation_high_m", "m", -50, 1500, 220, false, "Highest elevation of a seed: more begins further up."},
-  {"alcoves.radius_low_m", "m", 1, 12, 4, false, "Radius of the smallest spheres: more leaves no narrow places."},
-  {"alcoves.radius_high_m", "m", 1, 12, 10, false, "Radius of the largest spheres: more means wider halls."},
-  {"alcoves.steps_low", "", 1, 16, 1, true, "Fewest steps of growth from a seed: more means none are shallow."},
-  {"alcoves.steps_high", "", 1, 16, 3, true, "Most steps of growth from a seed: more goes deeper into the rock."},
-  {"alcoves.spheres_low", "", 1, 6, 2, true, "Fewest spheres at each step: more means no single file."},
-  {"alcoves.spheres_high", "", 1, 6, 4, true, "Most spheres at each step: more means wider, more broken walls."},
-  {"alcoves.step_m", "m", 0.5, 8, 3, false, "Length of a step: more goes deeper, until spheres no longer touch."},
-  {"alcoves.fall", "", -0.5, 0.5, 0.02, false, "Metres down per metre inwards: more leads down, below 0 up."},
-  {"alcoves.end_radius", "", 0.2, 1.5, 1, false, "Radius of the last step over the first: less means pointed ends, above 1 wide ones."},
-  {"alcoves.jitter", "", 0, 1, 0.8, false, "How far a sphere is displaced, in its radii: more means more irregular shapes."},
-  {"alcoves.stretch", "", 0.3, 2.5, 0.6, false, "Height over width of a sphere: more means taller ones, less flatter ones."},
-  {"alcoves.roof_m", "m", 1, 30, 3, false, "Rock that must stay above: more keeps alcoves out of thin places."},
-
-  {"arches.cell_m", "m", 4, 64, 22, false, "Edge of the cells that hold one seed of an arch each: more means fewer arches."},
-  {"arches.probability", "", 0, 1, 0.6, false, "Chance that a seed is looked at: more means more arches, 0 none."},
-  {"arches.slope_min", "", 0.2, 8, 0.8, false, "Slope that the surface must have at a seed: more keeps arches to steeper walls."},
-  {"arches.elevation_low_m", "m", -50, 1500, 0, false, "Lowest elevation of a seed: less begins further down."},
-  {"arches.elevation_high_m", "m", -50, 1500, 3, false, "Highest elevation of a seed: more begins further up."},
-  {"arches.radius_low_m", "m", 1, 12, 4.5, false, "Radius of the smallest spheres: more leaves no narrow places."},
-  {"arches.radius_high_m", "m", 1, 12, 9, false, "Radius of the largest spheres: more means wider halls."},
-  {"arches.span_m", "m", 10, 66, 60, false, "Longest way under an arch: more lets arches through thicker headlands."},
-  {"arches.jitter", "", 0, 1, 0.25, false, "How far a sphere is displaced, in its radii: more means more irregular shapes."},
-  {"arches.stretch", "", 0.3, 2.5, 1.6, false, "Height over width of a sphere: more means taller ones, less flatter ones."},
-  {"arches.roof_m", "m", 1, 30, 5, false, "Rock that must stay above: more keeps arches out of thin places."},
-
-  {"micro.wavelength_m", "m", 5, 500, 60, false, "Largest wavelength of the roughness on top: more means larger lumps."},
-  {"micro.octaves", "", 0, 6, 4, true, "Octaves of roughness: more means detail down to the voxel."},
-  {"micro.base_m", "m", 0, 5, 0.4, false, "Amplitude of roughness on plains: more means bumpier meadows."},
-  {"micro.hill_m", "m", 0, 10, 2.4, false, "Amplitude of roughness added where hilliness is 1: more means rougher ground away from scree and beaches."},
-
-  {"detail.joint_m", "m", 0, 2, 1, false, "Depth of the joints that cut steep rock: more means more broken walls, 0 smooth ones."},
-  {"detail.boulder_m", "m", 4, 40, 9, false, "Edge of the cells that hold a boulder each: more means larger ones, further apart."},
-  {"detail.boulder_share", "", 0, 1, 0.35, false, "Share of those cells with a boulder on scree, in streams and below sea cliffs: more means denser fields, 0 none."},
-
-  {"cover.snow_line_m", "m", -500, 5000, 1050, false, "Height above which snow lies on gentle ground: less means whiter mountains."},
-  {"cover.grass_line_m", "m", -500, 5000, 850, false, "Height up to which grass grows: less means barer mountains."},
-  {"cover.beach_m", "m", 0, 50, 4, false, "Height up to which gentle shores are sand: more means wider beaches."},
-  {"cover.rock_slope", "", 0.1, 4, 1.1, false, "Slope (tangent) from which rock is bare: less means barer flanks."},
-});
-// clang-format on
+inline constexpr std::array kManifestTable =
+    detail::joined(kGroundParameters, kLandformParameters, kVolumeParameters, kCoverParameters);
 
 }  // namespace talus

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "server/net/url_text.hpp"
+
 namespace talus::server {
 
 namespace {
@@ -35,13 +37,6 @@ bool is_token(std::string_view text) {
     return (l >= 'a' && l <= 'z') || (c >= '0' && c <= '9') || kMarks.find(c) != std::string_view::npos;
   };
   return !text.empty() && std::all_of(text.begin(), text.end(), is_token_char);
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
 /// What http_parser reports about one head. A name or value may come in pieces, always of one stretch of bytes.

@@ -24,13 +24,6 @@ WholeAddress whole(const asio::ip::address& address) {
   return asio::ip::make_address_v6(asio::ip::v4_mapped, address.to_v4()).to_bytes();
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
 bool is_same(const WholeAddress& a, const WholeAddress& b, unsigned bits) {
   const std::size_t bytes = bits / 8;
   if (!std::equal(a.begin(), a.begin() + bytes, b.begin())) return false;

@@ -1,4 +1,4 @@
-// Numbers and names in URLs, read strictly: one spelling each. Pure.
+// Numbers and names in URLs and header fields, read strictly: one spelling each. Pure.
 #pragma once
 
 #include <array>
@@ -11,6 +11,9 @@
 #include <vector>
 
 namespace talus::server {
+
+/// Without the spaces and tabs around it.
+std::string_view trimmed(std::string_view text);
 
 /// A whole number as `-?(0|[1-9][0-9]*)`, but not "-0"; within +-2^31. Nothing for any other spelling.
 std::optional<std::int32_t> whole_number(std::string_view text);
