@@ -30,6 +30,9 @@ inline constexpr std::size_t kChunkHeadBytesMax = 128;
 inline constexpr std::size_t kNameBytesMax = 64;
 inline constexpr std::size_t kTokenBytesMax = 1024;
 inline constexpr std::size_t kTextBytesMax = 512;
+/// Bytes of the secret that signs tokens; at least as long as its hash (RFC 7518, 3.2).
+inline constexpr std::size_t kTokenKeyBytesMin = 32;
+inline constexpr std::size_t kTokenKeyBytesMax = 4096;
 inline constexpr std::size_t kManifestJsonBytesMax = 96 * 1024;
 inline constexpr std::size_t kFormatsMax = 16;   ///< entries of hello.formats
 inline constexpr std::size_t kVersionsMax = 64;  ///< entries of refused.versions

@@ -244,11 +244,11 @@ std::vector<std::byte> encode_subtree(const TileTree& tree, int level) {
   json["contentAvailability"] = {contents};
   json["childSubtreeAvailability"] = {{"constant", level + kSubtreeLevels < tree.levels ? 1 : 0}};
 
-  constexpr std::uint32_t kMagic = 0x74627573;  // "subt"
+  constexpr std::uint32_t kSubtreeMagic = 0x74627573;  // "subt"
   std::string text = json.dump();
   text.resize((text.size() + 7) / 8 * 8, ' ');
   std::vector<std::byte> out;
-  put_number(out, kMagic);
+  put_number(out, kSubtreeMagic);
   put_number(out, std::uint32_t{1});
   put_number(out, std::uint64_t{text.size()});
   put_number(out, std::uint64_t{bits.size()});

@@ -35,17 +35,26 @@ class Block {
  public:
   Block(const WorldFunction& world, glm::dvec3 middle_m, const glm::dvec3& sun) : world_(world), sun_(sun) {
     const glm::i64vec3 middle(glm::floor(middle_m / world.voxel_m()));
-    samples_ = {{middle.x - kPictureEdge / 2, kPictureBottom, middle.z - kPictureEdge / 2}, kPictureEdge, kPictureHeight, kPictureEdge, {}, {}, {}, {}};
+    samples_ = {{middle.x - kPictureEdge / 2, kPictureBottom, middle.z - kPictureEdge / 2},
+                kPictureEdge,
+                kPictureHeight,
+                kPictureEdge,
+                {},
+                {},
+                {},
+                {}};
     DensityBrick brick;
     sample_block(world, brick, samples_);
   }
 
   bool holds(const glm::dvec3& p) const {
-    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < kPictureEdge - 1 && p.y < kPictureHeight - 1 && p.z < kPictureEdge - 1;
+    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < kPictureEdge - 1 && p.y < kPictureHeight - 1 &&
+           p.z < kPictureEdge - 1;
   }
 
   double density(const glm::dvec3& place) const {
-    const glm::dvec3 p = glm::clamp(place, glm::dvec3(0), glm::dvec3(kPictureEdge - 1.001, kPictureHeight - 1.001, kPictureEdge - 1.001));
+    const glm::dvec3 p = glm::clamp(place, glm::dvec3(0),
+                                    glm::dvec3(kPictureEdge - 1.001, kPictureHeight - 1.001, kPictureEdge - 1.001));
     const glm::ivec3 cell(p);
     std::array<float, 8> corners{};
     for (int c = 0; c < 8; ++c) {

@@ -62,7 +62,14 @@ glm::i64vec2 shore_near(const WorldFunction& world, const SurveyGrid& grid, glm:
 }
 
 void count_block(const WorldFunction& world, glm::i64vec2 middle, DensityBrick& brick, BlockCount& out) {
-  WorldBlock samples{{middle.x - kSearchEdge / 2, kSearchBottom, middle.y - kSearchEdge / 2}, kSearchEdge, kSearchHeight, kSearchEdge, {}, {}, {}, {}};
+  WorldBlock samples{{middle.x - kSearchEdge / 2, kSearchBottom, middle.y - kSearchEdge / 2},
+                     kSearchEdge,
+                     kSearchHeight,
+                     kSearchEdge,
+                     {},
+                     {},
+                     {},
+                     {}};
   sample_block(world, brick, samples);
   const RockBlock block = rock_of(samples);
   out.shore = coast_cells(block, kSlice);

@@ -10,6 +10,7 @@
 #include "client_sample/cli/mesh_file.hpp"
 #include "client_sample/cli/reach_server.hpp"
 #include "client_sample/cli/text.hpp"
+#include "client_sample/library/fetch_world.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/library/world_info.hpp"
 #include "core/mesh/build_chunk.hpp"
@@ -120,11 +121,9 @@ ExitCode get_remote(const GetOptions& options, const ChunkKey& key) {
   }
   if (is_stored_as_sent) return store(options, answer->body);
 
-  const auto manifest = fetch(*server, world);
-  if (!manifest) return kFailed;
-  const auto info = client::parse_world_info(manifest->body);
+  const auto info = client::fetch_world(*server, options.server.world);
   if (!info) {
-    fmt::print(stderr, "talus: {} is not the manifest of a world\n", world);
+    fmt::print(stderr, "talus: {}\n", info.error());
     return kFailed;
   }
   const int cells = info->shape.cells;

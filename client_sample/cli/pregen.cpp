@@ -15,10 +15,10 @@
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
 #include "client_sample/cli/interrupt.hpp"
+#include "client_sample/cli/map_picture.hpp"
 #include "client_sample/cli/pregen_plan.hpp"
 #include "client_sample/cli/text.hpp"
-#include "client_sample/library/http_get.hpp"
-#include "client_sample/library/world_info.hpp"
+#include "client_sample/library/fetch_world.hpp"
 #include "client_sample/library/world_stream.hpp"
 #include "protocol/limits.hpp"
 
@@ -30,29 +30,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kProgressBytesMax = 4096;
 /// A batch takes a server seconds; one without a single chunk in this time is a server that has stopped.
 constexpr double kSilent_s = 120;
-
-struct Area {
-  glm::dvec2 centre{};
-  double edge_m = 0;
-};
-
-/// "x,z,km".
-std::optional<Area> area_of(const std::string& text) {
-  const auto numbers = parse_place(text);
-  if (numbers && numbers->z > 0 && numbers->z <= 1000) return Area{{numbers->x, numbers->y}, numbers->z * 1000};
-  fmt::print(stderr, "talus: \"{}\" is no area: give x,z,km as 0,0,4, with at most 1000 km\n", text);
-  return std::nullopt;
-}
-
-std::optional<client::WorldInfo> world_of(const client::ServerAddress& server, const std::string& world) {
-  const auto answer = client::http_get(server, "/v1/worlds/" + world);
-  auto info = answer && answer->status == 200 ? client::parse_world_info(answer->body) : std::nullopt;
-  if (!info) {
-    fmt::print(stderr, "talus: no world {}: {}\n", world,
-               answer ? client::error_text(answer->body) : answer.error().message);
-  }
-  return info;
-}
 
 /// How many columns are done, in a file that also says of what.
 class ProgressFile {
@@ -186,8 +163,11 @@ ExitCode pregen(const PregenOptions& options) {
   }
   const auto area = area_of(options.area);
   if (!area || options.lod_low > options.lod_high) return kUsage;
-  const auto world = world_of(*server, options.server.world);
-  if (!world) return kFailed;
+  const auto world = client::fetch_world(*server, options.server.world);
+  if (!world) {
+    fmt::print(stderr, "talus: {}\n", world.error());
+    return kFailed;
+  }
   const ProgressFile file(options.progress, fmt::format("talus pregen {} {} {}..{}", world->world_hash, options.area,
                                                         options.lod_low, options.lod_high));
   const auto began_at = file.load();
@@ -199,7 +179,7 @@ ExitCode pregen(const PregenOptions& options) {
   stream.server = *server;
   stream.world = options.server.world;
   stream.client = "talus pregen";
-  Pregen pregen(loop, stream, PregenPlan(world->shape, area->centre, area->edge_m, options.lod_low, options.lod_high),
+  Pregen pregen(loop, stream, PregenPlan(world->shape, area->centre_m, area->edge_m, options.lod_low, options.lod_high),
                 *began_at);
   const Clock::time_point began = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };

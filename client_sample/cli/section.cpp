@@ -29,7 +29,9 @@ constexpr int kProbes = 400;
 std::optional<SectionView> view_of(const SectionOptions& options) {
   const auto from = parse_pair(options.from);
   const auto to = parse_pair(options.to);
-  const auto is_near = [](const glm::dvec2& p) { return std::abs(p.x) <= kSectionPlaceMax_m && std::abs(p.y) <= kSectionPlaceMax_m; };
+  const auto is_near = [](const glm::dvec2& p) {
+    return std::abs(p.x) <= kSectionPlaceMax_m && std::abs(p.y) <= kSectionPlaceMax_m;
+  };
   const double length = from && to ? glm::length(*to - *from) : 0;
   if (!from || !to || !is_near(*from) || !is_near(*to) || length < kLengthMin || length > kLengthMax) {
     fmt::print(stderr, "talus: --from and --to are x,z in metres, within +-1e10 and {} m to {} km apart, as -2000,0\n",
@@ -38,14 +40,17 @@ std::optional<SectionView> view_of(const SectionOptions& options) {
   }
   const auto size = parse_size(options.size);
   if (!size || std::min(size->x, size->y) < kSectionEdgeMin || std::max(size->x, size->y) > kSectionEdgeMax) {
-    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kSectionEdgeMin, kSectionEdgeMax);
+    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kSectionEdgeMin,
+               kSectionEdgeMax);
     return std::nullopt;
   }
   SectionView view{*from, *to, 0, 0, size->x, size->y};
   if (options.heights.empty()) return view;
   const auto heights = parse_pair(options.heights);
-  if (!heights || heights->x >= heights->y || std::abs(heights->x) > kSectionHeightMax_m || std::abs(heights->y) > kSectionHeightMax_m) {
-    fmt::print(stderr, "talus: \"{}\" are no heights: low,high in metres within +-{}\n", options.heights, kSectionHeightMax_m);
+  if (!heights || heights->x >= heights->y || std::abs(heights->x) > kSectionHeightMax_m ||
+      std::abs(heights->y) > kSectionHeightMax_m) {
+    fmt::print(stderr, "talus: \"{}\" are no heights: low,high in metres within +-{}\n", options.heights,
+               kSectionHeightMax_m);
     return std::nullopt;
   }
   view.low_m = heights->x;

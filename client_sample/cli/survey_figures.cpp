@@ -11,7 +11,7 @@ namespace talus::cli {
 namespace {
 
 constexpr int kSurveyEdge = 1024;
-constexpr int kStripColumns = 128;  // columns a strip evaluates at a time
+constexpr int kTileColumns = 128;  // columns a strip evaluates at a time
 /// Creases of the ridge map below this carry water.
 constexpr float kStream = -0.6f;
 constexpr int kLandProbes = 600;
@@ -147,12 +147,12 @@ SurveyGrid survey_grid(const WorldFunction& world, const MapArea& area) {
   out.height_m.resize(out.index(0, out.edge));
   out.ridge.resize(out.height_m.size());
   std::vector<ColumnBlock> blocks(static_cast<std::size_t>(strip_workers()));
-  for_each_strip("survey", (out.edge + kStripColumns - 1) / kStripColumns, [&](int strip, int worker) {
+  for_each_strip("survey", (out.edge + kTileColumns - 1) / kTileColumns, [&](int strip, int worker) {
     ColumnBlock& block = blocks[static_cast<std::size_t>(worker)];
-    const int k0 = strip * kStripColumns;
-    for (int i0 = 0; i0 < out.edge; i0 += kStripColumns) {
-      const int width = std::min(kStripColumns, out.edge - i0);
-      const int depth = std::min(kStripColumns, out.edge - k0);
+    const int k0 = strip * kTileColumns;
+    for (int i0 = 0; i0 < out.edge; i0 += kTileColumns) {
+      const int width = std::min(kTileColumns, out.edge - i0);
+      const int depth = std::min(kTileColumns, out.edge - k0);
       world.columns({corner_voxel.x + i0 * step, corner_voxel.y + k0 * step, step, width, depth, world.voxel_m()},
                     block);
       for (int k = 0; k < depth; ++k) {

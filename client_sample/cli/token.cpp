@@ -11,17 +11,15 @@
 
 #include "client_sample/cli/commands.hpp"
 #include "client_sample/cli/files.hpp"
+#include "protocol/limits.hpp"
 
 namespace talus::cli {
 
 namespace {
 
-constexpr std::size_t kKeyBytesMax = 4096;
-constexpr std::size_t kKeyBytesMin = 32;  // RFC 7518, 3.2: as long as the hash
-
 /// 256 random bits in a file that only its owner reads.
 ExitCode make_key(const std::string& path) {
-  std::array<unsigned char, kKeyBytesMin> bits{};
+  std::array<unsigned char, protocol::kTokenKeyBytesMin> bits{};
   if (::getentropy(bits.data(), bits.size()) != 0) {
     fmt::print(stderr, "talus: the system gives no random bytes\n");
     return kFailed;
@@ -62,12 +60,12 @@ std::string signed_token(const TokenOptions& options, const std::string& key) {
 
 ExitCode token(const TokenOptions& options) {
   if (options.makes_key) return make_key(options.key_file);
-  auto key = load_file(options.key_file, kKeyBytesMax);
+  auto key = load_file(options.key_file, protocol::kTokenKeyBytesMax);
   if (!key) return kFailed;
   while (key->ends_with('\n') || key->ends_with('\r')) key->pop_back();
-  if (key->size() < kKeyBytesMin) {
+  if (key->size() < protocol::kTokenKeyBytesMin) {
     fmt::print(stderr, "talus: {}: a key has at least {} bytes; --make-key makes one\n", options.key_file,
-               kKeyBytesMin);
+               protocol::kTokenKeyBytesMin);
     return kFailed;
   }
   const std::string text = signed_token(options, *key);

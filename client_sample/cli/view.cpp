@@ -21,14 +21,16 @@ constexpr double kViewHeightMax_m = 128;  // what a block reaches
 
 ExitCode view(const ViewOptions& options) {
   const auto at = parse_place(options.at);
-  if (!at || std::abs(at->x) > kViewPlaceMax_m || std::abs(at->z) > kViewPlaceMax_m || std::abs(at->y) > kViewHeightMax_m) {
+  if (!at || std::abs(at->x) > kViewPlaceMax_m || std::abs(at->z) > kViewPlaceMax_m ||
+      std::abs(at->y) > kViewHeightMax_m) {
     fmt::print(stderr, "talus: --at is x,y,z in metres, x and z within +-1e9, y within +-{}, as 4830,20,39285\n",
                kViewHeightMax_m);
     return kUsage;
   }
   const auto size = parse_size(options.size);
   if (!size || std::min(size->x, size->y) < kViewEdgeMin || std::max(size->x, size->y) > kViewEdgeMax) {
-    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kViewEdgeMin, kViewEdgeMax);
+    fmt::print(stderr, "talus: \"{}\" is no size: WIDTHxHEIGHT, each {} to {}\n", options.size, kViewEdgeMin,
+               kViewEdgeMax);
     return kUsage;
   }
   const auto manifest = load_manifest(options.manifest);

@@ -53,10 +53,10 @@ class Connection::State : public std::enable_shared_from_this<State> {
     expire_in(kOpenTimeout);
     resolver_.async_resolve(
         server_.host, std::to_string(server_.port),
-        [self = shared_from_this()](const asio::error_code& error, tcp::resolver::results_type found) {
+        [self = shared_from_this()](const asio::error_code& error, const tcp::resolver::results_type& found) {
           if (self->is_over_) return;
           if (error) return self->end({ErrorCode::kResolve, "no address for " + self->server_.host});
-          self->connect(std::move(found));
+          self->connect(found);
         });
   }
 

@@ -172,7 +172,7 @@ HttpClient::~HttpClient() {
   state_->abandon();
 }
 
-void HttpClient::get(std::string target, Done done) {
+void HttpClient::get(const std::string& target, Done done) {
   state_->get(target, std::move(done));
 }
 

@@ -35,7 +35,7 @@ class HttpClient {
 
   /// `target` begins with a slash and has no blanks. Requires that nothing is under way; `done` is called once and may
   /// ask for the next. The connection is made when it is needed and kept for as long as the server keeps it.
-  void get(std::string target, Done done);
+  void get(const std::string& target, Done done);
   bool is_waiting() const;
 
  private:

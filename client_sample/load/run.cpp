@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "client_sample/library/fetch_world.hpp"
 #include "client_sample/library/http_get.hpp"
 #include "client_sample/load/crowd.hpp"
 
@@ -13,15 +14,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kTick{5};
 constexpr std::chrono::milliseconds kGoodbye{500};
-
-std::expected<client::WorldInfo, std::string> world_of(const RunOptions& options) {
-  const auto answer = client::http_get(options.http, "/v1/worlds/" + options.world);
-  if (!answer) return std::unexpected(answer.error().message);
-  if (answer->status != 200) return std::unexpected(client::error_text(answer->body));
-  auto info = client::parse_world_info(answer->body);
-  if (!info) return std::unexpected("the server's manifest of " + options.world + " cannot be read");
-  return std::move(*info);
-}
 
 /// Nothing without an admin address; a server that does not answer there is not worth the run.
 MetricSamples metrics_of(const RunOptions& options) {
@@ -73,7 +65,7 @@ void check_fetches(Report& report, const Scenario& scenario) {
 }  // namespace
 
 std::expected<Report, std::string> run(const Scenario& scenario, const RunOptions& options) {
-  auto world = world_of(options);
+  auto world = client::fetch_world(options.http, options.world);
   if (!world) return std::unexpected(world.error());
   client::Loop loop;
   Report report;

@@ -33,10 +33,12 @@ std::optional<ArchWay> find_arch(const CarveControls& controls, Relief& relief, 
   const CarvePass& pass = controls.pass(CarveKind::kArches);
   const auto height = [&](glm::dvec2 at) { return relief.height_at(at.x, at.y); };
   std::optional<ArchWay> shortest;
+  const int looks = static_cast<int>((controls.arch_span_m - kLookFrom_m) / kLookStep_m);
   for (const glm::vec2& turn : kTurns) {
     const glm::vec2 along{inland.x * turn.x - inland.y * turn.y, inland.x * turn.y + inland.y * turn.x};
     float crest_m = seed_y_m;
-    for (float s = kLookFrom_m; s <= controls.arch_span_m; s += kLookStep_m) {
+    for (int look = 0; look <= looks; ++look) {
+      const float s = kLookFrom_m + static_cast<float>(look) * kLookStep_m;
       if (shortest && s >= shortest->length_m) break;
       const float h = height(ahead(seed_m, along, s));
       crest_m = std::max(crest_m, h);

@@ -146,9 +146,10 @@ class Grower {
     const float radius = std::min(way->radius_m, draw.between(pass_.radius_low_m, pass_.radius_high_m));
     const float step = kArchStepShare * radius;
     const float from = -kArchOverhang * radius;
-    const float to = way->length_m + kArchOverhang * radius;
+    const int steps = static_cast<int>((way->length_m - 2.0f * from) / step);
     const float y_m = seed.y_m - kArchBelow_m;
-    for (float s = from; s <= to; s += step) {
+    for (int i = 0; i <= steps; ++i) {
+      const float s = from + static_cast<float>(i) * step;
       const float off_middle = std::abs(2.0f * s / way->length_m - 1.0f);
       const float r = radius * (1.0f + kArchFlare * off_middle * off_middle);
       const float jitter = pass_.jitter * radius;

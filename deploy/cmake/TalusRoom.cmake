@@ -1,3 +1,21 @@
+# talus_read_together(TARGET): under the sanitizers a room's sources are compiled eight at a time, which reads the headers
+# of the standard library and Asio once for all of them: half the time, and nobody changes one source and builds again
+# there. Kernels stay alone: Highway compiles each several times over.
+function(talus_read_together target)
+  if(NOT TALUS_SANITIZE)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source)
+    file(STRINGS "${source}" kernel REGEX "HWY_TARGET_INCLUDE" LIMIT_COUNT 1)
+    if(kernel)
+      set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # talus_room(NAME [PUBLIC lib...] [PRIVATE lib...]): one folder of the house becomes one static library of all its *.cpp.
 # A room sees only what it links; tests/unit/house/include_order_test.cpp holds the same order for #include lines.
 function(talus_room name)
@@ -5,6 +23,7 @@ function(talus_room name)
   file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC ${ROOM_PUBLIC} PRIVATE talus_compile ${ROOM_PRIVATE})
+  talus_read_together(${name})
   # What an engine may link; TalusInstall installs it.
   file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   if(folder MATCHES "^(core/|protocol$|client_sample/library$)")

@@ -73,11 +73,11 @@ std::expected<TokenKeys, std::string> TokenKeys::load(std::span<const std::strin
   for (const std::string& file : files) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return std::unexpected(file + ": cannot be opened");
-    std::string key(kKeyBytesMax + 1, '\0');
+    std::string key(protocol::kTokenKeyBytesMax + 1, '\0');
     in.read(key.data(), static_cast<std::streamsize>(key.size()));
     key.resize(static_cast<std::size_t>(in.gcount()));
     while (key.ends_with('\n') || key.ends_with('\r')) key.pop_back();
-    if (key.size() < kKeyBytesMin || key.size() > kKeyBytesMax) {
+    if (key.size() < protocol::kTokenKeyBytesMin || key.size() > protocol::kTokenKeyBytesMax) {
       return std::unexpected(file + ": a key has 32 to 4096 bytes; `talus token --make-key FILE` makes one");
     }
     out.keys_.push_back(std::move(key));

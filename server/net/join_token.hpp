@@ -25,10 +25,8 @@ Count count_of(TokenFault fault);
 
 class TokenKeys {
  public:
-  static constexpr std::size_t kKeyBytesMin = 32;  ///< RFC 7518, 3.2: as long as the hash
-  static constexpr std::size_t kKeyBytesMax = 4096;
-
-  /// One key a file, a newline at its end not counted. The error names the file.
+  /// One key a file, of protocol::kTokenKeyBytesMin to kTokenKeyBytesMax bytes, a newline at its end not counted. The
+  /// error names the file.
   static std::expected<TokenKeys, std::string> load(std::span<const std::string> files);
 
   /// Without keys everybody may read.

@@ -50,7 +50,7 @@ struct IoThread {
 };
 
 struct Listener {
-  Listener(Executor executor, Listen listen, bool with_tls) : acceptor(executor), kind(listen), is_tls(with_tls) {}
+  Listener(const Executor& executor, Listen listen, bool with_tls) : acceptor(executor), kind(listen), is_tls(with_tls) {}
   Acceptor acceptor;
   const Listen kind;
   const bool is_tls;

@@ -19,7 +19,7 @@ namespace {
 // A BIO over a descriptor. OpenSSL's own uses write(2), which raises SIGPIPE when the peer has gone.
 
 int descriptor_of(BIO* bio) {
-  return static_cast<int>(reinterpret_cast<std::intptr_t>(BIO_get_data(bio)));
+  return *static_cast<const int*>(BIO_get_data(bio));
 }
 
 bool is_worth_retrying() {
@@ -168,10 +168,10 @@ std::expected<std::shared_ptr<const TlsContext>, std::string> TlsContext::load(c
 std::unique_ptr<TlsSession> TlsContext::accept(int descriptor) const {
   SSL* ssl = SSL_new(context_.get());
   if (ssl == nullptr) throw std::bad_alloc();
-  auto session = std::make_unique<TlsSession>(ssl);
+  auto session = std::make_unique<TlsSession>(ssl, descriptor);
   BIO* bio = BIO_new(bio_method());
   if (bio == nullptr) throw std::bad_alloc();
-  BIO_set_data(bio, reinterpret_cast<void*>(static_cast<std::intptr_t>(descriptor)));
+  BIO_set_data(bio, &session->descriptor_);
   BIO_set_init(bio, 1);
   SSL_set_bio(ssl, bio, bio);
   SSL_set_accept_state(ssl);

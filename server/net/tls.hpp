@@ -28,7 +28,10 @@ struct TlsProgress {
 /// One connection. Owner: its thread.
 class TlsSession {
  public:
-  explicit TlsSession(ssl_st* of) : ssl_(of) {}
+  /// Takes `of`. The descriptor outlives the session.
+  TlsSession(ssl_st* of, int descriptor) : ssl_(of), descriptor_(descriptor) {}
+  TlsSession(const TlsSession&) = delete;  // OpenSSL holds the address of descriptor_
+  TlsSession& operator=(const TlsSession&) = delete;
 
   TlsProgress read(std::span<std::byte> into);
   /// A call that wanted something must be made again with bytes that begin with the same ones.
@@ -43,7 +46,10 @@ class TlsSession {
   };
   TlsProgress progress(int result, std::size_t bytes);
 
+  friend class TlsContext;
+
   std::unique_ptr<ssl_st, Free> ssl_;
+  int descriptor_;
   bool is_broken_ = false;
 };
 
