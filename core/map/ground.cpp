@@ -29,7 +29,8 @@ class Painter {
     const float height = b.height_m[at];
     switch (layer_) {
       case MapLayer::kShaded:
-        return land_.land(height, material(b, i, k, at)) * (1.0f + 0.14f * b.ridge[at] * b.hilliness[at]);
+        return land_.land(height, material(b, i, k, at), dryness(b, at)) *
+               (1.0f + 0.14f * b.ridge[at] * b.hilliness[at]);
       case MapLayer::kHeight:
         return heat_light((height - low_m_) / span_m_);
       case MapLayer::kSlope:
@@ -95,9 +96,15 @@ class Painter {
     const float high = std::clamp(b.height_m[at] / 1200.0f, 0.0f, 1.0f);
     glm::vec3 out = light_of(b.height_m[at] < 0 ? 0x22303E : 0x5A5C58) * (1.0f + 0.8f * high);
     const DistrictShares shares = b.districts_at(at);
-    for (std::size_t n = 0; n < kDistricts; ++n)
-      out += (district_light(static_cast<District>(n)) - out) * std::clamp(shares[n], 0.0f, 1.0f);
+    for (std::size_t n = 0; n < kDistricts; ++n) out = mix(out, district_light(static_cast<District>(n)), shares[n]);
     return out;
+  }
+
+  /// How little grows: badlands are barer than table land.
+  static float dryness(const ColumnBlock& b, std::size_t at) {
+    const DistrictShares shares = b.districts_at(at);
+    return shares[static_cast<std::size_t>(District::kBadlands)] +
+           0.55f * shares[static_cast<std::size_t>(District::kMesas)];
   }
 
   Material material(const ColumnBlock& b, int i, int k, std::size_t at) const {

@@ -21,6 +21,9 @@ constexpr std::array kHeat{
     ColourStop{0.75f, light_of(0xF98C0A)}, ColourStop{1.0f, light_of(0xFCFFA4)},
 };
 
+/// Dust and bleached grass, where it hardly rains.
+constexpr glm::vec3 kDryGround = light_of(0xB7A070);
+
 /// How much of a material's own colour shows against the tint of its height.
 float weight_of(Material material) {
   switch (material) {
@@ -105,8 +108,9 @@ LandPalette::LandPalette(const Manifest& manifest) {
             ColourStop{snow_m * 1.3f, light_of(0xA39A94)}};
 }
 
-glm::vec3 LandPalette::land(float height_m, Material material) const {
-  return mix(tint(height_m), light_of(info_of(material).colour_rgb), weight_of(material));
+glm::vec3 LandPalette::land(float height_m, Material material, float dryness) const {
+  const glm::vec3 ground = mix(tint(height_m), kDryGround, 0.7f * dryness);
+  return mix(ground, light_of(info_of(material).colour_rgb), weight_of(material));
 }
 
 }  // namespace talus

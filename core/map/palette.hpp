@@ -49,8 +49,9 @@ class LandPalette {
  public:
   explicit LandPalette(const Manifest& manifest);
   glm::vec3 tint(float height_m) const { return ramp(stops_, height_m); }
-  /// The tint with as much of the material's own colour as that material is worth on a map.
-  glm::vec3 land(float height_m, Material material) const;
+  /// The tint, paler where the land is dry (0..1), with as much of the material's own colour as that material is worth
+  /// on a map.
+  glm::vec3 land(float height_m, Material material, float dryness) const;
 
  private:
   std::array<ColourStop, 8> stops_;
