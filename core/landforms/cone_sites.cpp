@@ -9,9 +9,13 @@
 namespace talus {
 namespace {
 
-/// A centre stays this far from the middle of its cell, in cells; what is left to the next cells' middles is reach.
-constexpr double kJitter = 0.3;
-constexpr double kReach = 1 - kJitter;
+/// A centre lies anywhere in its cell but on its edge, or cones would stand in rows; and its cones reach this far, in
+/// cells.
+constexpr double kJitter = 0.48;
+constexpr double kReach = 0.7;
+/// Fire comes up in provinces: chance is scaled by a value noise over so many cells, from none to this much.
+constexpr double kProvince = 5;
+constexpr double kProvinceMost = 2.2;
 /// Ground below this is sea floor, in metres; between the two shores no cone stands, or bays would fill with them.
 constexpr float kSeaFloor_m = -150.0f;
 constexpr float kLand_m = 5.0f;
@@ -70,6 +74,28 @@ void grow_cinder_cones(const ConeControls& c, const ConeSite& site, Draw& draw, 
   }
 }
 
+/// Scale of the chance of cell (x, z), x of the first turn; its mean over many cells is about 1.
+double province(const ConeControls& c, std::int64_t x, std::int64_t z, std::int64_t around) {
+  // Where the world wraps, a whole number of provinces makes a turn.
+  const std::int64_t turn =
+      around == 0 ? 0 : std::max<std::int64_t>(1, std::llround(static_cast<double>(around) / kProvince));
+  const double at_x =
+      static_cast<double>(x) * (turn == 0 ? 1 / kProvince : static_cast<double>(turn) / static_cast<double>(around));
+  const double at_z = static_cast<double>(z) / kProvince;
+  const double low_x = std::floor(at_x);
+  const double low_z = std::floor(at_z);
+  const auto corner = [&](int i, int k) {
+    const auto px = static_cast<std::uint64_t>(wrapped(static_cast<std::int64_t>(low_x) + i, turn));
+    const auto pz = static_cast<std::uint64_t>(static_cast<std::int64_t>(low_z) + k);
+    return static_cast<double>(mix64(mix64(c.seed ^ 0xF17EULL, px), pz) >> 11) * 0x1p-53;
+  };
+  const double u = at_x - low_x;
+  const double near = corner(0, 0) + (corner(1, 0) - corner(0, 0)) * u;
+  const double far = corner(0, 1) + (corner(1, 1) - corner(0, 1)) * u;
+  const double t = std::clamp((near + (far - near) * (at_z - low_z) - 0.25) / 0.5, 0.0, 1.0);
+  return kProvinceMost * t * t * (3 - 2 * t);
+}
+
 }  // namespace
 
 void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<ConeSite>& out) {
@@ -85,11 +111,10 @@ void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<
   const double x1 = at(grid.x_voxel, grid.width - 1);
   const double z0 = at(grid.z_voxel, 0);
   const double z1 = at(grid.z_voxel, grid.depth - 1);
-  // A cell's middle lies half a cell from its corner, and a cone reaches one cell from there; a fitted cell can be a
-  // little smaller than that.
-  const int more = around == 0 ? 0 : 1;
-  for (std::int64_t cz = cell(z0 - 0.5 * cell_m) - 1 - more; cz <= cell(z1 + 0.5 * cell_m) + more; ++cz) {
-    for (std::int64_t cx = cell(x0 - 0.5 * cell_m) - 1 - more; cx <= cell(x1 + 0.5 * cell_m) + more; ++cx) {
+  // A centre lies within its cell, and 4 m beside it once it is snapped.
+  const double look_m = reach_m + 4;
+  for (std::int64_t cz = cell(z0 - look_m); cz <= cell(z1 + look_m); ++cz) {
+    for (std::int64_t cx = cell(x0 - look_m); cx <= cell(x1 + look_m); ++cx) {
       ConeSite site;
       // In a world that wraps a site is that of its cell in the first turn, whole periods away.
       const std::int64_t x_cell = wrapped(cx, around);
@@ -97,7 +122,12 @@ void find_cone_sites(const ConeControls& c, const ColumnGrid& grid, std::vector<
       const double turns_m = turns == 0 ? 0.0 : static_cast<double>(turns) * period_m(grid);
       site.hash = mix64(mix64(c.seed, static_cast<std::uint64_t>(x_cell)), static_cast<std::uint64_t>(cz));
       Draw draw(site.hash);
-      if (draw.unit() >= std::max(c.land_share, c.sea_share)) continue;
+      // No province scales a share beyond kProvinceMost: most cells are told by one draw.
+      const double chance = draw.unit();
+      const double most = std::max(c.land_share, c.sea_share);
+      if (chance >= kProvinceMost * most) continue;
+      site.scale = province(c, x_cell, cz, around);
+      if (chance >= site.scale * most) continue;
       site.x_m = snapped((static_cast<double>(x_cell) + 0.5 + draw.between(-kJitter, kJitter)) * cell_m) + turns_m;
       site.z_m = snapped((static_cast<double>(cz) + 0.5 + draw.between(-kJitter, kJitter)) * cell_m);
       const bool is_near =
@@ -118,8 +148,8 @@ void grow_cones(const ConeControls& c, const ConeSite& site, float ground_m, flo
   cone.x_m = site.x_m;
   cone.z_m = site.z_m;
   if (ground_m < kSeaFloor_m) {
-    if (chance >= c.sea_share) return;
-    cone.height_m = static_cast<float>(c.seamount_m * (0.55 + 0.9 * size * size));
+    if (chance >= site.scale * c.sea_share) return;
+    cone.height_m = static_cast<float>(c.seamount_m * (0.3 + 1.15 * size * size));
     cone.radius_m = std::min(cone.height_m * draw.real(4.5, 7.0), static_cast<float>(radius_m));
     // Waves planed off every third at some height below the sea of today.
     if (draw.unit() < 0.35) cone.flat = draw.real(0.62, 0.85);
@@ -127,7 +157,7 @@ void grow_cones(const ConeControls& c, const ConeSite& site, float ground_m, flo
     out.push_back(cone);
     return;
   }
-  if (ground_m < kLand_m || chance >= c.land_share) return;
+  if (ground_m < kLand_m || chance >= site.scale * c.land_share) return;
   if (draw.unit() < 0.25 + 0.75 * static_cast<double>(hilliness)) {
     // On a range a cone crowns what is there already.
     const double crown = 1 - 0.45 * static_cast<double>(hilliness);

@@ -49,6 +49,7 @@ struct ConeSite {
   double x_m = 0;
   double z_m = 0;
   std::uint64_t hash = 0;
+  double scale = 1;  ///< of the chance that it holds a cone
 };
 /// Sites whose cone could reach a column of `grid`, in the order of their cells; `out` is emptied first.
 void find_cone_sites(const ConeControls& controls, const ColumnGrid& grid, std::vector<ConeSite>& out);

@@ -10,12 +10,21 @@
 #define TALUS_DISTRICT_ROW
 namespace talus {
 
-/// The noise of the first two districts and of the next two; the sum of both is that of glaciers.
+/// The noise of the first two districts and of the next two; the sum of both is that of glaciers. `fringe` frays both.
 struct DistrictRow {
-  std::array<const float*, 3> first, second, height;  ///< value and slopes
+  std::array<const float*, 3> first, second, fringe, height;  ///< value and slopes
   const float* hilliness;
+  float* folded;
   std::array<std::array<float*, 3>, kDistricts> out;
 };
+
+/// Under table land and badlands layers keep this little of their folds and tilt. Around them they rise to it over this
+/// many half widths of a border, and whatever the ground there: a wall is cut through layers, it does not bend them.
+inline constexpr float kFlatMesas = 0.15f;
+inline constexpr float kFlatBadlands = 0.45f;
+inline constexpr float kFlatReach = 3.0f;
+/// How far borders are frayed, in units of the noise.
+inline constexpr float kFringe = 0.14f;
 
 struct DistrictTerms {
   std::array<float, kDistricts> threshold;
@@ -51,8 +60,11 @@ unsigned district_row(const DistrictTerms& t, const DistrictRow& r, std::size_t 
       const float threshold = t.threshold[static_cast<std::size_t>(k)];
       return smoothstep(threshold - t.border, threshold + t.border, noise);
     };
-    const Jet<V> a = load(r.first);
-    const Jet<V> b = load(r.second);
+    const Jet<V> calm_a = load(r.first);
+    const Jet<V> calm_b = load(r.second);
+    const Jet<V> fringe = load(r.fringe) * kFringe;
+    const Jet<V> a = calm_a + fringe;
+    const Jet<V> b = calm_b + fringe;
     const Jet<V> height = load(r.height);
     const Jet<V> hilliness{hn::LoadU(d, r.hilliness + i), hn::Zero(d), hn::Zero(d)};
 
@@ -80,6 +92,14 @@ unsigned district_row(const DistrictTerms& t, const DistrictRow& r, std::size_t 
     }
     // 0.7071: the sum of two like noises is as wide as either.
     w[4] = above(District::kGlacial, (a + b) * 0.70710678f) * range;
+    const auto flat_around = [&](District k, const Jet<V>& noise, float left) {
+      const float threshold = t.threshold[static_cast<std::size_t>(k)];
+      const Jet<V> near = smoothstep(threshold - kFlatReach * t.border, threshold + t.border, noise);
+      return hn::Sub(one.v, hn::Mul(near.v, hn::Set(d, 1.0f - left)));
+    };
+    hn::StoreU(hn::Mul(flat_around(District::kBadlands, calm_a, kFlatBadlands),
+                       flat_around(District::kMesas, calm_b, kFlatMesas)),
+               d, r.folded + i);
     for (std::size_t k = 0; k < kDistricts; ++k) {
       const auto some = hn::Gt(w[k].v, hn::Zero(d));
       if (!hn::AllFalse(d, some)) present |= 1U << k;
@@ -102,6 +122,8 @@ namespace {
 
 /// The two noises: two octaves, so that districts have bays and outliers.
 constexpr double kDistrictGain = 0.35;
+/// Wavelength of what frays their borders, as a share of theirs: 3 km, 1.3 km and 570 m of 15 km.
+constexpr double kFringeShare = 0.2;
 /// A threshold no noise reaches: the district is nowhere.
 constexpr float kNowhere = 10.0f;
 
@@ -141,11 +163,12 @@ double district_threshold(double share) {
 void district_weights(const DistrictControls& c, const ColumnGrid& grid, const GroundArrays& ground,
                       std::span<const float> hilliness, std::span<float> workspace, DistrictWeights& weights) {
   const std::size_t count = sample_count(grid);
-  TALUS_CHECK(workspace.size() >= kDistrictArrays * count);
+  TALUS_CHECK(workspace.size() >= kDistrictArrays * count && weights.folded.size() >= count);
   std::array<std::span<float>, kDistrictArrays> noise;
   for (std::size_t n = 0; n < kDistrictArrays; ++n) noise[n] = workspace.subspan(n * count, count);
   fractal_noise({c.wavelength_m, 2, 2.1, kDistrictGain, mix64(c.seed, 0)}, grid, noise[0], noise[1], noise[2]);
   fractal_noise({c.wavelength_m, 2, 2.1, kDistrictGain, mix64(c.seed, 1)}, grid, noise[3], noise[4], noise[5]);
+  fractal_noise({c.wavelength_m * kFringeShare, 3, 2.3, 0.5, mix64(c.seed, 2)}, grid, noise[6], noise[7], noise[8]);
 
   DistrictTerms terms{};
   terms.border = static_cast<float>(c.border);
@@ -161,8 +184,10 @@ void district_weights(const DistrictControls& c, const ColumnGrid& grid, const G
   for (std::size_t at = 0; at < count; at += stride) {
     DistrictRow r{{&noise[0][at], &noise[1][at], &noise[2][at]},
                   {&noise[3][at], &noise[4][at], &noise[5][at]},
+                  {&noise[6][at], &noise[7][at], &noise[8][at]},
                   {&ground.height_m[at], &ground.slope_x[at], &ground.slope_z[at]},
                   &hilliness[at],
+                  &weights.folded[at],
                   {}};
     for (std::size_t k = 0; k < kDistricts; ++k) {
       r.out[k] = {&weights.of[k].v[at], &weights.of[k].x[at], &weights.of[k].z[at]};

@@ -47,13 +47,16 @@ struct JetArrays {
 struct DistrictWeights {
   std::array<JetArrays, kDistricts> of;
   std::array<bool, kDistricts> present{};
+  /// Share of their folds and tilt that rock layers keep, 0..1: less in and around badlands and table land, whatever
+  /// the ground, so that no layer bends where only the ground ends.
+  std::span<float> folded;
 
   const JetArrays& operator[](District district) const { return of[static_cast<std::size_t>(district)]; }
   bool has(District district) const { return present[static_cast<std::size_t>(district)]; }
 };
 
 /// Arrays of sample_count(grid) floats that district_weights needs as workspace.
-inline constexpr std::size_t kDistrictArrays = 6;
+inline constexpr std::size_t kDistrictArrays = 9;
 
 /// Fills weights.of, whose spans hold sample_count(grid) floats, and weights.present. `ground` is the relief before
 /// erosion, `hilliness` 0 (plain) .. 1 (range), so slow that weights leave its slope out.

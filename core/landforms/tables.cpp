@@ -97,7 +97,7 @@ HWY_EXPORT(mesas_row);
 namespace {
 
 FractalNoise hills_of(const BadlandsControls& c) {
-  return {c.wavelength_m, 4, 2.1, 0.45, c.seed};
+  return {c.wavelength_m, 3, 2.1, 0.3, c.seed};
 }
 
 TablesRow row_at(std::size_t at, const JetArrays& weight, const GroundArrays& g, std::span<float> first,

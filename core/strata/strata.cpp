@@ -115,9 +115,13 @@ constexpr float kWindow_m = 45.0f;
 
 /// Wavelength of the ragged border between two sets, in metres.
 constexpr double kBorder_m = 160.0;
-/// Metres to the side by which the border of two rocks moves per metre of depth inside a layer: it never stands
+/// Metres to the side by which the border of two rocks, or of two sets, moves per metre of height: it never stands
 /// upright.
 constexpr double kSlant = 5.0;
+
+glm::dvec2 leaning(const RockPoint& point, double height_m) {
+  return {point.place_m.x + kSlant * height_m, point.place_m.y - kSlant * height_m};
+}
 
 }  // namespace
 
@@ -179,7 +183,7 @@ int Strata::set_at(const RockPoint& p) const {
   // Beyond these nothing is left to chance; a wide cell takes the larger part.
   float border = 0.5f;
   if (fraction > 0.35f && fraction < 0.65f && p.span_m < kBorder_m)
-    border = 0.35f + 0.3f * borders_.quantile(controls_.seed, p.place_m);
+    border = 0.35f + 0.3f * borders_.quantile(controls_.seed, leaning(p, static_cast<double>(p.height_m)));
   return fraction > border ? std::min(low + 1, last) : low;
 }
 
@@ -193,10 +197,9 @@ Material Strata::rock_at(const RockPoint& point) const {
   if (point.span_m >= DominantRock::kSpanLow_m) return dominant_.at(set_at(point), depth_m, point.span_m);
   const LayerPlace place = layer_at(point);
   const LayerSet& rocks = set(place.set);
-  const double inside_m = kSlant * static_cast<double>(depth_m - rocks.top_m(place.index));
+  const auto inside_m = static_cast<double>(depth_m - rocks.top_m(place.index));
   const auto name = static_cast<std::uint64_t>(place.set) * kLayers + static_cast<std::uint64_t>(place.index) + 1;
-  const glm::dvec2 moved(point.place_m.x + inside_m, point.place_m.y - inside_m);
-  return rocks.rock_at(place.index, facies_.quantile(mix64(controls_.seed, name), moved));
+  return rocks.rock_at(place.index, facies_.quantile(mix64(controls_.seed, name), leaning(point, inside_m)));
 }
 
 }  // namespace talus

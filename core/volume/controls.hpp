@@ -60,7 +60,9 @@ inline constexpr double kCarveReach_m = 88.0;
 
 /// Coarse lattices do not see the volume at all, and by a rule at each point, not by leaving something out: on lattice
 /// points of 16 m the warp is 0, around lattice columns of 16 m a pillar of rock stays uncarved, exactly so at the
-/// column itself. Chunks of such LODs need not look for spheres or fans.
+/// column itself. Between the sea and the next level of that lattice, where nearly all arches and caves are, there is
+/// no lattice point to keep: there pillars end in stumps just above the water and in what hangs just below 16 m. Chunks
+/// of such LODs need not look for spheres or fans.
 inline constexpr double kStill_m = 16.0;
 
 /// How far beyond its radius a sphere can turn rock to air: flowing together at most union_m (h below is at most 1, and

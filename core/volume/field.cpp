@@ -25,6 +25,12 @@ float to_still(double at_m) {
   return static_cast<float>(std::abs(at_m - kStill_m * std::floor(at_m / kStill_m + 0.5)));
 }
 
+/// Height of a sample above the pillars' stumps or below where they hang: 0 where pillars stand whole.
+float to_pillars(float y_m) {
+  constexpr auto kLevel = static_cast<float>(kStill_m);
+  return y_m > 0.0f && y_m < kLevel ? std::min(y_m, kLevel - y_m) : 0.0f;
+}
+
 }  // namespace
 
 Field::Field(const HardnessProfile& profile, const CarveControls& controls, const FieldColumns& columns,
@@ -133,8 +139,8 @@ void Field::row(int k, float* out) {
   for (const std::uint32_t n : memory_.layer_spheres) is_carved = carve_row(k, columns_.spheres[n]) || is_carved;
   if (!is_carved) return;
   const double z_m = static_cast<double>(columns_.grid.z_voxel + k * columns_.grid.step_voxel) * columns_.grid.voxel_m;
-  subtract_row({memory_.carve.data(), memory_.still_x.data(), to_still(z_m), rough_row(k), controls_.roughness_m,
-                controls_.blend_m},
+  subtract_row({memory_.carve.data(), memory_.still_x.data(), to_still(z_m), to_pillars(y_m_), rough_row(k),
+                controls_.roughness_m, controls_.blend_m},
                width_, out);
 }
 

@@ -81,17 +81,20 @@ bool any_rough_target(const float* HWY_RESTRICT distance, std::size_t width) {
   return any;
 }
 
-/// Distance to carved space outside the pillar around the still column that is `away` from the sample.
-/// Infinite at the column itself, so that nothing at all is carved there.
+/// Distance to carved space outside the pillar around the still column that is `away` from the sample, and whose end is
+/// `level` from it. Infinite at the column itself, so that nothing at all is carved there.
 template <class V>
-HWY_INLINE V outside_pillar(V distance, V away2) {
+HWY_INLINE V outside_pillar(V distance, V away2, V level2) {
   constexpr float radius = kPillar_m;
   const hn::DFromV<V> d;
-  const V inside =
-      hn::Mul(hn::Sub(hn::Div(hn::Set(d, radius * radius), hn::Max(away2, hn::Set(d, 1e-12f))), hn::Set(d, 1.0f)),
-              hn::Set(d, 0.5f * radius));
-  const V outside = hn::Sub(hn::Set(d, radius), hn::Sqrt(away2));
-  const V pillar = hn::IfThenElse(hn::Lt(away2, hn::Set(d, radius * radius)), inside, outside);
+  const auto within = [&](V square) {
+    const V inside =
+        hn::Mul(hn::Sub(hn::Div(hn::Set(d, radius * radius), hn::Max(square, hn::Set(d, 1e-12f))), hn::Set(d, 1.0f)),
+                hn::Set(d, 0.5f * radius));
+    const V outside = hn::Sub(hn::Set(d, radius), hn::Sqrt(square));
+    return hn::IfThenElse(hn::Lt(square, hn::Set(d, radius * radius)), inside, outside);
+  };
+  const V pillar = smooth_min(within(away2), within(level2), 1.0f);
   // Out of reach of the deepest point of a cave the pillar is not there.
   const V reach = hn::Set(d, 144.0f);
   return hn::IfThenElse(hn::Lt(away2, reach), smooth_max(distance, pillar, 1.0f), distance);
@@ -109,7 +112,8 @@ void subtract_row_target(const CarvedRow& r, std::size_t width, float* HWY_RESTR
       c = hn::Add(c, hn::Mul(hn::Mul(hn::LoadU(d, r.noise + i), hn::Set(d, r.roughness_m)), fade));
     }
     const V dx = hn::LoadU(d, r.still_x + i);
-    c = outside_pillar(c, hn::Add(hn::Mul(dx, dx), hn::Set(d, r.still_z * r.still_z)));
+    c = outside_pillar(c, hn::Add(hn::Mul(dx, dx), hn::Set(d, r.still_z * r.still_z)),
+                       hn::Set(d, r.still_y * r.still_y));
     // Away from carved space the distance to it grows to infinity at the band's end, with slope 1 at the wall.
     const V left = hn::Max(hn::Sub(band, c), hn::Set(d, 1e-6f));
     const V grown = hn::Div(hn::Mul(c, band), left);

@@ -26,11 +26,11 @@ void sphere_row(const SphereRow& row, std::size_t first, std::size_t end, float*
 /// Whether any of `width` distances is near enough to a wall to be roughened.
 bool any_rough(const float* distance, std::size_t width);
 
-/// What is carved out of a row: distances to the walls, the distance to the next still column along x and z, and noise
-/// (or null where no sample is near a wall).
+/// What is carved out of a row: distances to the walls, the distance to the next still column along x and z and, along
+/// y, to where pillars stand, and noise (or null where no sample is near a wall).
 struct CarvedRow {
   const float *distance, *still_x;
-  float still_z;
+  float still_z, still_y;
   const float* noise;
   float roughness_m, blend_m;
 };

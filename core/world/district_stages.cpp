@@ -7,9 +7,6 @@
 namespace talus {
 namespace {
 
-/// Under table land and badlands layers keep this little of their folds and tilt.
-constexpr float kFlatMesas = 0.15f;
-constexpr float kFlatBadlands = 0.45f;
 /// What districts leave to the large gullies.
 constexpr float kLeftBadlands = 0.35f;
 constexpr float kLeftDunes = 0.0f;
@@ -30,6 +27,7 @@ DistrictStages::DistrictStages(Arrays& arrays, const ColumnGrid& grid, ColumnBlo
     out.district[k].resize(sample_count(grid));
     weights.of[k] = {out.district[k], arrays.span(arrays.take()), arrays.span(arrays.take())};
   }
+  weights.folded = arrays.span(arrays.take());
   rills = arrays.jet();
   rill_strength = arrays.span(arrays.take());
   shore_x = arrays.span(arrays.take());
@@ -59,15 +57,10 @@ void raise_landforms(const WorldFunction::Terms& t, const GroundArrays& ground, 
 
 void lay_tables(const WorldFunction::Terms& t, const DistrictStages& stages, const GroundArrays& ground,
                 ColumnBlock& out) {
-  const auto flatten = [&](District district, float left) {
-    const auto w = weight(stages, district);
-    for (std::size_t i = 0; i < out.stack_m.size() && i < w.size(); ++i) {
-      out.stack_m[i] = kStackTop + (out.stack_m[i] - kStackTop) * (1.0f - (1.0f - left) * w[i]);
-    }
-  };
-  if (stages.weights.has(District::kBadlands)) flatten(District::kBadlands, kFlatBadlands);
+  for (std::size_t i = 0; i < sample_count(out.grid); ++i) {
+    out.stack_m[i] = kStackTop + (out.stack_m[i] - kStackTop) * stages.weights.folded[i];
+  }
   if (!stages.weights.has(District::kMesas)) return;
-  flatten(District::kMesas, kFlatMesas);
   const JetArrays& w = stages.weights[District::kMesas];
   const auto width = static_cast<std::size_t>(out.grid.width);
   for (std::size_t at = 0; at < sample_count(out.grid); at += out.stride) {

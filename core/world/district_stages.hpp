@@ -24,15 +24,16 @@ struct DistrictStages {
 };
 
 /// Arrays that districts take for good, and the most they borrow for a while.
-inline constexpr std::size_t kDistrictStageArrays = 2 * kDistricts + 6;
-inline constexpr std::size_t kDistrictBorrowed = 6;
+inline constexpr std::size_t kDistrictStageArrays = 2 * kDistricts + 7;
+inline constexpr std::size_t kDistrictBorrowed = kDistrictArrays;
 
 /// After the relief: weights, and the raw shapes of badlands, tables and karst. `fade` is
 /// the relief's own fade target.
 void raise_landforms(const WorldFunction::Terms& terms, const GroundArrays& ground, std::span<const float> hilliness,
                      std::span<const float> fade, const ColumnGrid& grid, const Arrays& arrays, DistrictStages& stages);
 
-/// After the layers' place is known: lays them flat under table land and badlands, and cuts table land into terraces.
+/// After the layers' place is known: lays them flatter under table land and badlands, and cuts table land into
+/// terraces.
 void lay_tables(const WorldFunction::Terms& terms, const DistrictStages& stages, const GroundArrays& ground,
                 ColumnBlock& out);
 

@@ -48,7 +48,7 @@ inline constexpr std::array kLandformParameters = std::to_array<ParameterInfo>({
   {"erosion.hill_strength", "", 0, 2, 0.85, false, "Erosion added where hilliness is 1: more means rougher ranges."},
 
   {"strata.sets", "", 2, 64, 12, true, "Layer sets of the world: more means more kinds of country before one comes again."},
-  {"strata.set_m", "m", 500, 100000, 9000, false, "Wavelength at which layer sets change: more means wider countries of one rock."},
+  {"strata.set_m", "m", 500, 100000, 14000, false, "Wavelength at which layer sets change: more means wider countries of one rock."},
   {"strata.facies_m", "m", 50, 20000, 600, false, "Wavelength at which a layer's rock changes: more means beds that stay of one rock for longer, less means patches."},
   {"strata.deformation_m", "m", 0, 400, 120, false, "How far folds lift and lower the layers: more bends them more."},
   {"strata.fold_m", "m", 200, 20000, 3500, false, "Wavelength of the largest folds: less means tighter ones."},

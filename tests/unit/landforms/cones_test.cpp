@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -122,6 +123,73 @@ TEST(Cones, AreFoundFromEveryColumnTheyReach) {
       }
     }
   }
+}
+
+TEST(Cones, StandAcrossTheSeamOfAWorldThatWrapsAsAnywhere) {
+  ConeControls controls;
+  constexpr std::int64_t period = 131'072;
+  std::vector<ConeSite> here;
+  std::vector<ConeSite> there;
+  std::vector<Cone> cones;
+  int across = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    controls.seed = seed;
+    // Half of the grid lies before the seam, half behind it; the other one is three turns away.
+    const ColumnGrid at_seam{-100 * 40, static_cast<std::int64_t>(seed) * 50'000, 40, 200, 200, 1, period};
+    ColumnGrid turned = at_seam;
+    turned.x_voxel += 3 * period;
+    find_cone_sites(controls, at_seam, here);
+    find_cone_sites(controls, turned, there);
+    ASSERT_EQ(here.size(), there.size()) << seed;
+    for (std::size_t n = 0; n < here.size(); ++n) {
+      ASSERT_EQ(here[n].hash, there[n].hash) << seed;
+      ASSERT_EQ(here[n].x_m + 3.0 * static_cast<double>(period), there[n].x_m) << seed;
+      ASSERT_EQ(here[n].z_m, there[n].z_m) << seed;
+      cones.clear();
+      grow_cones(controls, here[n], -320.0f, 0.1f, cones);
+      if (cones.empty()) continue;
+      const double foot_m = static_cast<double>(cones[0].radius_m);
+      if (std::abs(cones[0].x_m) > 0.7 * foot_m) continue;
+      // Columns two metres to either side of the seam, through the middle: one cone, without a step.
+      const ColumnGrid fine{-2, static_cast<std::int64_t>(cones[0].z_m), 1, 5, 1, 1, period};
+      const Ground ground(cones, fine);
+      ASSERT_GT(ground.at(2, 0), 0.0) << seed;
+      for (int i = 0; i < 4; ++i) ASSERT_LT(std::abs(ground.at(i + 1, 0) - ground.at(i, 0)), 2.0) << seed;
+      ++across;
+    }
+  }
+  EXPECT_GT(across, 10);
+}
+
+TEST(Cones, StandInProvincesAndNotInRows) {
+  const ConeControls controls;
+  std::vector<ConeSite> sites;
+  std::array<int, 8> within{};  // where sites lie in their cells, along x
+  int most = 0;
+  int least = 1'000;
+  int all = 0;
+  for (std::int64_t tile = 0; tile < 40; ++tile) {
+    // 12 x 12 cells.
+    find_cone_sites(controls, {tile * 1'000'000, -tile * 2'000'000, 600, 160, 160, 1}, sites);
+    int here = 0;
+    std::vector<Cone> cones;
+    for (const ConeSite& site : sites) {
+      cones.clear();
+      grow_cones(controls, site, -320.0f, 0.1f, cones);
+      if (cones.empty()) continue;
+      ++here;
+      const double cell = site.x_m / controls.cell_m;
+      ++within[static_cast<std::size_t>((cell - std::floor(cell)) * 7.999)];
+    }
+    most = std::max(most, here);
+    least = std::min(least, here);
+    all += here;
+  }
+  EXPECT_GT(most, 2 * least) << "provinces differ";
+  EXPECT_NEAR(all / 40.0, 144 * controls.sea_share, 0.3 * 144 * controls.sea_share);
+  // No lane between rows is emptier than half of the mean, and none twice as full.
+  EXPECT_GT(*std::ranges::min_element(within), all / 16);
+  EXPECT_LT(*std::ranges::max_element(within), all / 4);
 }
 
 TEST(Cones, StandOnLandAndOnTheSeaFloorButNotOnShores) {

@@ -158,6 +158,7 @@ struct Weighed {
   ColumnGrid grid;
   Array height, slope, hilliness, workspace;
   std::array<std::array<Array, 3>, kDistricts> arrays;
+  Array folded;
   DistrictWeights weights;
   Weighed(const ColumnGrid& at, float height_m, float hilly) : grid(at) {
     const std::size_t count = sample_count(at);
@@ -169,6 +170,8 @@ struct Weighed {
       for (Array& a : arrays[k]) a.resize(count);
       weights.of[k] = {arrays[k][0], arrays[k][1], arrays[k][2]};
     }
+    folded.resize(count);
+    weights.folded = folded;
     district_weights({}, grid, {height, slope, slope}, hilliness, workspace, weights);
   }
 };
@@ -202,6 +205,33 @@ TEST(Districts, HaveTheSharesThatTheManifestSays) {
   }
   EXPECT_NEAR(high[4] / points, controls.share[4], 0.03);
   EXPECT_EQ(low[4], 0) << "glaciers on a plain";
+}
+
+TEST(Districts, FlattenLayersWhateverTheGroundAndWhollyBeforeTablesBegin) {
+  double table = 0;
+  for (int tile = 0; tile < 20; ++tile) {
+    const ColumnGrid grid{tile * 3'000'000, -tile * 7'000'000, 150, 100, 100, 1.0};
+    const Weighed dry(grid, 60, 0);
+    const Weighed shore(grid, -3, 0);
+    const Weighed range(grid, 900, 1);
+    ASSERT_EQ(dry.folded, shore.folded);
+    ASSERT_EQ(dry.folded, range.folded);
+    for (std::size_t k = 0; k < 100; ++k) {
+      for (std::size_t i = 0; i < 100; ++i) {
+        const std::size_t at = k * row_stride(grid) + i;
+        const auto w = static_cast<double>(dry.weights[District::kMesas].v[at]);
+        const auto folded = static_cast<double>(dry.folded[at]);
+        // 0.15 is what is left of folds in table land; the fringe of a border may lie before the calm noise's.
+        ASSERT_GE(folded, 0.15 * 0.45 - 1e-6);
+        ASSERT_LE(folded, 1.0);
+        if (w > 0.97) {
+          ASSERT_LT(folded, 0.45);
+        }
+        table += w;
+      }
+    }
+  }
+  EXPECT_GT(table, 1'000);
 }
 
 TEST(Districts, AreFoundByTheirShareOfTheNoise) {

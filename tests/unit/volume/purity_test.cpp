@@ -94,6 +94,32 @@ TEST(Volume, IsNotThereOnCoarseLattices) {
   EXPECT_FALSE(lod_4.has_jut);
 }
 
+TEST(Volume, LeavesNoPillarsBetweenTheSeaAndTheNextStillLevel) {
+  CliffCoast coast(kSeed);
+  const MadeUpVolume volume(coast);
+  MadeUpVolume::Memory memory;
+  int open = 0;
+  int stumps = 0;
+  for (std::int64_t x = -320; x <= 320; x += 16) {
+    // The still column in the middle of 3 x 3 columns, from -4 m up to 14 m.
+    for (std::int64_t z = -112; z <= 0; z += 16) {
+      const auto columns = volume.columns({x - 1, z - 1, 1, 3, 3, 1.0}, memory);
+      const auto values = volume.sample(columns, -4, 19, memory);
+      const auto at = [&](int y_m, int i, int k) {
+        return values[static_cast<std::size_t>(((y_m + 4) * 3 + k) * 3 + i)];
+      };
+      // Carved to its left and right at 6 m, under rock: no pillar stands between.
+      if (columns.height[row_stride(columns.grid) + 1] < 14.0f || !(at(6, 0, 1) > 0.5f && at(6, 2, 1) > 0.5f)) continue;
+      ++open;
+      ASSERT_GT(at(6, 1, 1), 0.0f) << x << ", " << z;
+      ASSERT_LT(at(0, 1, 1), 0.0f) << "the lattice point itself stays rock, " << x << ", " << z;
+      ++stumps;
+    }
+  }
+  EXPECT_GT(open, 3) << "no cave with a still column was found";
+  EXPECT_EQ(open, stumps);
+}
+
 TEST(Volume, GivesTheSameBitsOnEveryTarget) {
   CliffCoast coast(kSeed);
   const MadeUpVolume volume(coast);
