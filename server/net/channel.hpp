@@ -35,19 +35,21 @@ class Channel {
   void close();
   /// Ends the connection at once; what was not taken is lost (SO_LINGER 0).
   void reset();
-  /// Whether the peer has closed its side, without reading a byte.
+  /// Whether the peer has closed its side or reset, whatever it has sent before that and was not read.
   bool is_peer_gone();
   asio::io_context::executor_type executor() { return socket_.get_executor(); }
 
  private:
   std::size_t write_record(std::span<const asio::const_buffer> buffers, asio::error_code& error);
-  void note_handshake(bool has_failed);
+  /// Counts the handshake once: established, or `is_over` before it was.
+  void note_handshake(bool is_over);
 
   Socket socket_;
   Metrics* metrics_;
   std::unique_ptr<TlsSession> tls_;
   TlsWant write_want_ = TlsWant::kWritable;
   bool is_handshake_noted_ = false;
+  unsigned reads_in_a_row_ = 0;
 };
 
 }  // namespace talus::server

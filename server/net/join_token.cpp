@@ -2,6 +2,8 @@
 
 #include <jwt.h>
 
+#include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 
@@ -25,10 +27,24 @@ Jwt opened(const std::string& token, const std::string& key) {
   return jwt_get_alg(raw) == JWT_ALG_HS256 ? std::move(out) : nullptr;
 }
 
+/// A claim that is a whole number, or `otherwise` when it is absent. Nothing when it is something else.
+std::optional<std::int64_t> seconds_of(jwt_t* token, const char* claim, std::int64_t otherwise) {
+  // As JSON: the library reads a number where there is a text or a fraction, too.
+  const std::unique_ptr<char, void (*)(void*)> json(jwt_get_grants_json(token, claim), &std::free);
+  if (json == nullptr) return otherwise;
+  const std::string_view text(json.get());
+  std::int64_t value = 0;
+  const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && at == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
 std::optional<TokenFault> fault_of_claims(jwt_t* token, std::string_view world, std::int64_t now_unix_s) {
-  // An absent number reads as 0: a token without an end has ended.
-  if (jwt_get_grant_int(token, "exp") <= now_unix_s) return TokenFault::kExpired;
-  if (jwt_get_grant_int(token, "nbf") > now_unix_s) return TokenFault::kNotYet;
+  // A token without an end has ended.
+  const auto ends = seconds_of(token, "exp", 0);
+  const auto begins = seconds_of(token, "nbf", 0);
+  if (!ends || !begins) return TokenFault::kBad;
+  if (*ends <= now_unix_s) return TokenFault::kExpired;
+  if (*begins > now_unix_s) return TokenFault::kNotYet;
   const char* named = jwt_get_grant(token, "world");
   if (named == nullptr || world != named) return TokenFault::kOtherWorld;
   return std::nullopt;
@@ -41,7 +57,7 @@ std::string_view describe(TokenFault fault) {
     case TokenFault::kMissing:
       return "token: this world is read with a token";
     case TokenFault::kBad:
-      return "token: not signed with a key of this server";
+      return "token: not signed with a key of this server, or its exp or nbf is no whole number";
     case TokenFault::kExpired:
       return "token: its time is over";
     case TokenFault::kNotYet:

@@ -12,6 +12,12 @@ namespace {
 
 constexpr std::size_t kControlBytesMax = 125;  // RFC 6455, 5.5
 
+/// Of a client's frame: two bytes, the length if it is longer than seven bits (in its shortest form, or wslay refuses),
+/// and the mask.
+std::uint64_t head_bytes(std::uint64_t payload_bytes) {
+  return 2U + (payload_bytes < 126 ? 0U : payload_bytes <= 0xFFFF ? 2U : 8U) + 4U;
+}
+
 std::vector<std::byte> control_frame(std::uint8_t opcode, std::span<const std::byte> payload) {
   const std::size_t size = std::min(payload.size(), kControlBytesMax);
   std::vector<std::byte> out{static_cast<std::byte>(0x80 | opcode), static_cast<std::byte>(size)};
@@ -44,7 +50,7 @@ class WebSocketFraming final : public Framing {
     return std::nullopt;
   }
 
-  bool is_between_messages() const override { return !has_begun_ && !is_in_message_; }
+  bool is_between_messages() const override { return taken_bytes_ == framed_bytes_ && !is_in_message_; }
 
   FrameHead message_head(std::size_t message_bytes) const override {
     FrameHead head;
@@ -84,7 +90,7 @@ class WebSocketFraming final : public Framing {
     const std::size_t taken = std::min(length, input.size());
     std::memcpy(buffer, input.data(), taken);
     input = input.subspan(taken);
-    framing.has_begun_ = true;
+    framing.taken_bytes_ += taken;
     return static_cast<ssize_t>(taken);
   }
 
@@ -107,7 +113,7 @@ class WebSocketFraming final : public Framing {
     frame_taken_ += part.data_length;
     if (frame_taken_ < part.payload_length) return std::nullopt;
     is_in_frame_ = false;
-    has_begun_ = false;
+    framed_bytes_ += head_bytes(part.payload_length) + part.payload_length;
     return is_control ? end_control(part.opcode) : end_data(part.fin != 0);
   }
 
@@ -156,7 +162,8 @@ class WebSocketFraming final : public Framing {
   std::vector<std::byte> message_;
   std::vector<std::byte> control_;
   std::uint64_t frame_taken_ = 0;
-  bool has_begun_ = false;  ///< bytes came since the last frame ended
+  std::uint64_t taken_bytes_ = 0;   ///< by wslay, which may hold the beginning of the next frame
+  std::uint64_t framed_bytes_ = 0;  ///< of frames that have ended
   bool is_in_frame_ = false;
   bool is_in_message_ = false;
   bool is_whole_ = false;

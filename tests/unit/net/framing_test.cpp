@@ -89,6 +89,26 @@ TEST(WebSocketFraming, JoinsFragmentsAndLetsControlFramesBetweenThem) {
   EXPECT_EQ(events[1], (Event{Kind::kMessage, "abcdef", CloseCode::kNormal}));
 }
 
+TEST(WebSocketFraming, KnowsWhetherAMessageHasBegunHoweverTheBytesCame) {
+  const std::string part = frame(0x02, "ab");
+  const std::string ping = frame(0x89, "hi");
+  const std::string last = frame(0x80, std::string(300, 'c'));
+  const std::string whole = frame(0x82, std::string(70'000, 'x'));
+  const auto is_between = [](std::initializer_list<std::string> pieces) {
+    const auto framing = make_websocket_framing(100'000);
+    for (const std::string& piece : pieces) read(*framing, piece, piece.size());
+    return framing->is_between_messages();
+  };
+  EXPECT_TRUE(is_between({}));
+  EXPECT_TRUE(is_between({ping}));
+  EXPECT_TRUE(is_between({whole, whole + ping}));
+  EXPECT_TRUE(is_between({part + ping + last}));
+  EXPECT_FALSE(is_between({part}));
+  EXPECT_FALSE(is_between({part + ping})) << "a ping ends no message";
+  EXPECT_FALSE(is_between({ping + whole.substr(0, 1)})) << "one byte came together with the frame before";
+  EXPECT_FALSE(is_between({whole.substr(0, 69'000)}));
+}
+
 TEST(WebSocketFraming, EndsOnWhatNoClientMaySend) {
   struct Case {
     const char* why;

@@ -62,6 +62,25 @@ TEST(JoinToken, WithoutAnEndOrAWorldOpensNothing) {
   EXPECT_EQ(keys.fault_of(token_of({.world = ""}), "default", kNow), TokenFault::kOtherWorld);
 }
 
+TEST(JoinToken, WhoseTimesAreNoWholeNumbersIsBad) {
+  const TokenKeys keys = keys_of({kKey});
+  const auto fault_with = [&](const char* grants) {
+    jwt_t* raw = nullptr;
+    jwt_new(&raw);
+    const std::unique_ptr<jwt_t, decltype(&jwt_free)> token(raw, &jwt_free);
+    EXPECT_EQ(jwt_add_grants_json(raw, grants), 0);
+    jwt_set_alg(raw, JWT_ALG_HS256, reinterpret_cast<const unsigned char*>(kKey.data()), static_cast<int>(kKey.size()));
+    const std::unique_ptr<char, void (*)(void*)> text(jwt_encode_str(raw), &std::free);
+    return keys.fault_of(text.get(), "default", kNow);
+  };
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":1800000060,"nbf":1800000000})"), std::nullopt);
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":1800000060,"nbf":"1900000000"})"), TokenFault::kBad);
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":1800000060,"nbf":1900000000.5})"), TokenFault::kBad);
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":1800000060,"nbf":null})"), TokenFault::kBad);
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":1800000060,"nbf":[1]})"), TokenFault::kBad);
+  EXPECT_EQ(fault_with(R"({"world":"default","exp":"1800000060"})"), TokenFault::kBad);
+}
+
 TEST(JoinToken, IsTakenFromOneAlgorithmOnly) {
   const TokenKeys keys = keys_of({kKey});
   for (const jwt_alg_t other : {JWT_ALG_NONE, JWT_ALG_HS384, JWT_ALG_HS512}) {
