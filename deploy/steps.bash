@@ -101,6 +101,27 @@ install_packages() {
     fail "packages could not be installed. The names are those of Debian 12 (bookworm); elsewhere install their like and run again with --no-install."
 }
 
+# unpack_packages: programs of [unpacked] that cannot be run yet, without the rest of their packages.
+unpack_packages() {
+  local folder="$root/build/unpacked" missing=() package
+  export PATH="$PATH:/usr/sbin:$folder/usr/sbin:$folder/usr/bin"
+  [ "$install" = yes ] || return 0
+  for package in $(packages_of unpacked); do
+    command -v "$package" >/dev/null || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  step "unpacking ${missing[*]}" unpack.log unpack_into "$folder" "${missing[@]}" ||
+    fail "packages could not be fetched: apt-get download ${missing[*]}"
+}
+
+unpack_into() {
+  local folder=$1 package
+  shift
+  mkdir -p "$folder/packages"
+  (cd "$folder/packages" && rm -f ./*.deb && apt-get download "$@") || return 1
+  for package in "$folder"/packages/*.deb; do dpkg-deb -x "$package" "$folder" || return 1; done
+}
+
 # build PRESET LABEL CMAKE_ARGUMENT... -- TARGET...
 build() {
   local preset=$1 label=$2 arguments=()

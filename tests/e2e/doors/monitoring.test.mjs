@@ -3,14 +3,13 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 import { json, request } from './frame/http.mjs';
-import { startServer } from './frame/server.mjs';
+import { freePort, startServer } from './frame/server.mjs';
 import { meshPath } from './frame/terrain.mjs';
 
 const folder = fileURLToPath(new URL('../../../deploy/monitoring/', import.meta.url));
@@ -23,14 +22,6 @@ const drawn = dashboard.panels.flatMap((panel) => (panel.targets ?? []).map(({ e
 
 /// What Grafana fills in.
 const filled = (expr) => expr.replaceAll('$__rate_interval', '1m').replaceAll('$instance', '.+');
-
-async function freePort() {
-  const server = createServer();
-  await new Promise((done) => server.listen(0, '127.0.0.1', done));
-  const { port } = server.address();
-  await new Promise((done) => server.close(done));
-  return port;
-}
 
 /// Calls `look` until it gives something, for a bounded time.
 async function eventually(look, what) {

@@ -1,6 +1,7 @@
 // A talusd of its own for a test: started on free loopback ports, known by its ready line, always stopped.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -12,6 +13,15 @@ export const program = process.env.TALUSD ?? join(root, 'build/release/bin/talus
 const readyMs = 20_000;
 const stopMs = 20_000;
 const freePorts = ['--listen', '127.0.0.1:0', '--tcp-listen', '127.0.0.1:0', '--admin-listen', '127.0.0.1:0'];
+
+/// One that was free a moment ago, for programs that cannot take 0 and tell.
+export async function freePort() {
+  const server = createServer();
+  await new Promise((done) => server.listen(0, '127.0.0.1', done));
+  const { port } = server.address();
+  await new Promise((done) => server.close(done));
+  return port;
+}
 
 function launch(args) {
   if (!existsSync(program)) throw new Error(`${program} is missing: build it with cmake --build --preset release`);
