@@ -8,9 +8,11 @@
 namespace talus::protocol {
 
 inline constexpr std::uint16_t kVersionLow = 1;   ///< oldest version this build speaks
-inline constexpr std::uint16_t kVersionHigh = 2;  ///< newest
+inline constexpr std::uint16_t kVersionHigh = 3;  ///< newest
 /// First version in which strips are sent.
 inline constexpr std::uint16_t kVersionOfStrips = 2;
+/// First version in which a client is told what cannot be made.
+inline constexpr std::uint16_t kVersionOfFailures = 3;
 
 /// Largest message a client may send: head and all, checked on the declared length before anything is allocated.
 inline constexpr std::size_t kInboundMessageBytesMax = 64 * 1024;

@@ -7,8 +7,8 @@ namespace talus::protocol {
 std::string_view name_of(const Message& message) {
   // In the order of the variant.
   static constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames{
-      "hello", "welcome", "refused", "view", "view_accepted", "held", "want", "chunk",
-      "leave", "idle",    "credit",  "ping", "pong",          "bye",  "strip"};
+      "hello", "welcome", "refused", "view", "view_accepted", "held", "want",  "chunk",
+      "leave", "idle",    "credit",  "ping", "pong",          "bye",  "strip", "failed"};
   return kNames[message.index()];
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <expected>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -79,6 +80,11 @@ struct StripHead {
   std::uint64_t revision = 0;
   std::uint32_t payload_bytes = 0;  ///< 0: an empty strip
 };
+/// What was asked for and cannot be made.
+struct Failed {
+  ChunkKey key;
+  std::optional<ChunkFace> face{};  ///< of a strip; nothing for the chunk itself
+};
 struct Leave {
   std::vector<ChunkKey> keys;
 };
@@ -101,7 +107,7 @@ struct Bye {
 };
 
 using Message = std::variant<Hello, Welcome, Refused, ViewMessage, ViewAccepted, Held, Want, ChunkHead, Leave, Idle,
-                             Credit, Ping, Pong, Bye, StripHead>;
+                             Credit, Ping, Pong, Bye, StripHead, Failed>;
 std::string_view name_of(const Message& message);
 std::string_view name_of(ByeReason reason);
 std::string_view name_of(RefusedReason reason);

@@ -188,6 +188,12 @@ StripHead strip_of(const wire::Strip& m, FieldReader& read) {
   return {read.strip(*m.key(), m.face()), m.revision(), m.payload_bytes()};
 }
 
+Failed failed_of(const wire::Failed& m, FieldReader& read) {
+  if (m.face() == -1) return {read.key(*m.key()), std::nullopt};
+  const StripKey strip = read.strip(*m.key(), m.face());
+  return {strip.key, strip.face};
+}
+
 Held held_of(const wire::Held& m, FieldReader& read) {
   Held out;
   out.chunks = read.held(m.chunks());
@@ -216,6 +222,8 @@ std::expected<Message, MessageError> message_of(const wire::Envelope& envelope, 
       return chunk_of(*envelope.message_as_Chunk(), read);
     case wire::Message::Strip:
       return strip_of(*envelope.message_as_Strip(), read);
+    case wire::Message::Failed:
+      return failed_of(*envelope.message_as_Failed(), read);
     case wire::Message::Leave:
       return Leave{read.keys(envelope.message_as_Leave()->keys())};
     case wire::Message::Idle:

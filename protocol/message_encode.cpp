@@ -108,6 +108,11 @@ struct UnionWriter {
         wire::Message::Strip,
         wire::CreateStrip(builder, &key, static_cast<std::uint8_t>(m.strip.face), m.revision, m.payload_bytes).Union()};
   }
+  Written operator()(const Failed& m) const {
+    const wire::Key key = wire_key(m.key);
+    const auto face = m.face ? static_cast<std::int8_t>(*m.face) : std::int8_t{-1};
+    return {wire::Message::Failed, wire::CreateFailed(builder, &key, face).Union()};
+  }
   Written operator()(const Leave& m) const {
     TALUS_CHECK(m.keys.size() <= kKeysPerMessageMax);
     const auto fill = [&](std::size_t i, wire::Key* out) { *out = wire_key(m.keys[i]); };

@@ -17,6 +17,7 @@
 #include "client_sample/cli/interrupt.hpp"
 #include "client_sample/cli/map_picture.hpp"
 #include "client_sample/cli/pregen_plan.hpp"
+#include "client_sample/cli/reach_server.hpp"
 #include "client_sample/cli/text.hpp"
 #include "client_sample/library/fetch_world.hpp"
 #include "client_sample/library/world_stream.hpp"
@@ -36,15 +37,17 @@ class ProgressFile {
  public:
   ProgressFile(std::string path, std::string what) : path_(std::move(path)), what_(std::move(what)) {}
 
-  /// 0 when there is no file. kFailed: it is of something else.
-  std::expected<std::uint64_t, ExitCode> load() const {
+  /// 0 when there is no file. kFailed: it is of something else, or says more than `columns`.
+  std::expected<std::uint64_t, ExitCode> load(std::uint64_t columns) const {
     if (path_.empty() || !has_file(path_)) return 0;
     const auto text = load_file(path_, kProgressBytesMax);
     if (!text) return std::unexpected(kFailed);
     const std::size_t line = text->find('\n');
     std::uint64_t done = 0;
-    const bool is_ours = line != std::string::npos && text->substr(0, line) == what_ &&
-                         std::from_chars(text->data() + line + 1, text->data() + text->size(), done).ec == std::errc{};
+    const bool is_ours =
+        line != std::string::npos && text->substr(0, line) == what_ &&
+        std::from_chars(text->data() + line + 1, text->data() + text->size(), done).ec == std::errc{} &&
+        done <= columns;
     if (is_ours) return done;
     fmt::print(stderr, "talus: {} is the progress of something else: remove it or name another file\n", path_);
     return std::unexpected(kFailed);
@@ -78,6 +81,7 @@ class Pregen {
   std::uint64_t done() const { return done_; }
   std::uint64_t surfaces() const { return surfaces_; }
   std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t failures() const { return failures_; }
   std::uint64_t columns() const { return plan_.columns(); }
   const std::optional<client::ClientError>& error() const { return error_; }
 
@@ -96,6 +100,12 @@ class Pregen {
     out.on_strip = [this](const client::ArrivedStrip& strip) {
       last_chunk_ = Clock::now();
       bytes_ += strip.payload.size();
+    };
+    out.on_failed = [this](const protocol::Failed& failed) {
+      last_chunk_ = Clock::now();
+      ++failures_;
+      fmt::print(stderr, "talus: the server cannot make {} {}/{}/{}/{}\n", failed.face ? "a strip of" : "chunk",
+                 failed.key.lod, failed.key.x, failed.key.y, failed.key.z);
     };
     // What is wanted by name is complete: first the chunks, then the strips of those that have a surface.
     out.on_idle = [this](const protocol::Idle&) {
@@ -139,6 +149,7 @@ class Pregen {
   std::uint64_t done_ = 0;
   std::uint64_t surfaces_ = 0;
   std::uint64_t bytes_ = 0;
+  std::uint64_t failures_ = 0;
   Clock::time_point last_chunk_ = Clock::now();
   std::optional<client::ClientError> error_;
   client::WorldStream stream_;  ///< last: its handlers use all of the above
@@ -156,11 +167,8 @@ void print_progress(const Pregen& pregen, std::uint64_t began_at, double seconds
 }  // namespace
 
 ExitCode pregen(const PregenOptions& options) {
-  const auto server = client::parse_server_url(options.server.url);
-  if (!server) {
-    fmt::print(stderr, "talus: {}\n", server.error().message);
-    return kUsage;
-  }
+  const auto server = reach_server(options.server);
+  if (!server) return server.error();
   const auto area = area_of(options.area);
   if (!area || options.lod_low > options.lod_high) return kUsage;
   const auto world = client::fetch_world(*server, options.server.world);
@@ -170,7 +178,8 @@ ExitCode pregen(const PregenOptions& options) {
   }
   const ProgressFile file(options.progress, fmt::format("talus pregen {} {} {}..{}", world->world_hash, options.area,
                                                         options.lod_low, options.lod_high));
-  const auto began_at = file.load();
+  PregenPlan plan(world->shape, area->centre_m, area->edge_m, options.lod_low, options.lod_high);
+  const auto began_at = file.load(plan.columns());
   if (!began_at) return began_at.error();
 
   catch_interrupt();
@@ -179,8 +188,7 @@ ExitCode pregen(const PregenOptions& options) {
   stream.server = *server;
   stream.world = options.server.world;
   stream.client = "talus pregen";
-  Pregen pregen(loop, stream, PregenPlan(world->shape, area->centre_m, area->edge_m, options.lod_low, options.lod_high),
-                *began_at);
+  Pregen pregen(loop, stream, std::move(plan), *began_at);
   const Clock::time_point began = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
   std::uint64_t stored = *began_at;
@@ -196,7 +204,7 @@ ExitCode pregen(const PregenOptions& options) {
   if (pregen.error()) fmt::print(stderr, "talus: {}\n", pregen.error()->message);
   fmt::print("{} of {} columns, {} surfaces, {} bytes\n", pregen.done(), pregen.columns(), pregen.surfaces(),
              pregen.bytes());
-  if (pregen.error()) return kFailed;
+  if (pregen.error() || pregen.failures() != 0) return kFailed;
   return pregen.done() == pregen.columns() ? kDone : kIncomplete;
 }
 

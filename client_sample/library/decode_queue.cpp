@@ -63,6 +63,12 @@ void DecodeQueue::finish(const WorkRef& work) {
   std::erase(begun_, work);
 }
 
+void DecodeQueue::clear() {
+  std::deque<WorkRef> dropped;  // destroyed outside the lock
+  const std::lock_guard lock(mutex_);
+  dropped.swap(waiting_);
+}
+
 void DecodeQueue::stop() {
   {
     const std::lock_guard lock(mutex_);

@@ -42,6 +42,8 @@ class DecodeQueue {
 
   /// Decodes what has waited longest; waits for at most `patience` for something to come. False if nothing came.
   bool decode_one(std::chrono::milliseconds patience);
+  /// What nobody has begun to decode is dropped.
+  void clear();
   /// Every wait ends, and later ones return at once.
   void stop();
 

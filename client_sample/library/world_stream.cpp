@@ -40,8 +40,7 @@ class WorldStream::Viewer {
   void give_credit(std::uint64_t bytes) {
     owed_bytes_ += bytes;
     // One message for every eighth of the credit: the server never waits for it, and it costs little.
-    if (!info_ || owed_bytes_ < options_.credit_bytes / 8) return;
-    send(protocol::Credit{std::exchange(owed_bytes_, 0)});
+    if (info_ && owed_bytes_ >= options_.credit_bytes / 8) pay_credit();
   }
 
   void close() {
@@ -60,6 +59,10 @@ class WorldStream::Viewer {
   }
 
   void send(const Message& message) { connection_.send(protocol::encode(message)); }
+
+  void pay_credit() {
+    if (owed_bytes_ != 0) send(protocol::Credit{std::exchange(owed_bytes_, 0)});
+  }
 
   void greet() {
     send(protocol::Hello{protocol::kVersionLow, protocol::kVersionHigh, options_.world, options_.server.token,
@@ -81,6 +84,9 @@ class WorldStream::Viewer {
       if (strip->strip.key.lod == 0) return break_off("a strip of LOD 0, which nothing is finer than");
       if (handlers_.on_strip) handlers_.on_strip({*strip, decoded->payload, bytes.size()});
       if (!options_.gives_credit_itself) give_credit(bytes.size());
+    } else if (const auto* failed = std::get_if<protocol::Failed>(&message)) {
+      if (!info_) return break_off("a failure came before the welcome");
+      if (handlers_.on_failed) handlers_.on_failed(*failed);
     } else if (const auto* leave = std::get_if<protocol::Leave>(&message)) {
       if (handlers_.on_leave) handlers_.on_leave(leave->keys);
     } else if (const auto* accepted = std::get_if<protocol::ViewAccepted>(&message)) {
@@ -112,6 +118,9 @@ class WorldStream::Viewer {
     if (options_.held_world_hash.empty() || options_.held_world_hash == info_->world_hash) say_what_is_held();
     if (waiting_view_) send(*std::exchange(waiting_view_, std::nullopt));
     if (waiting_want_) send(*std::exchange(waiting_want_, std::nullopt));
+    // What was consumed behind the hello: the server may have been promised so little that nothing would ever come
+    // which could bring the next eighth together.
+    pay_credit();
     if (handlers_.on_welcome) handlers_.on_welcome(*info_);
   }
 

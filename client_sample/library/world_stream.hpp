@@ -57,7 +57,8 @@ struct StreamHandlers {
   std::function<void(const WorldInfo&)> on_welcome;
   std::function<void(const protocol::ViewAccepted&)> on_view;
   std::function<void(const ArrivedChunk&)> on_chunk;
-  std::function<void(const ArrivedStrip&)> on_strip;  ///< none from a server of version 1
+  std::function<void(const ArrivedStrip&)> on_strip;       ///< none from a server of version 1
+  std::function<void(const protocol::Failed&)> on_failed;  ///< the server cannot make it; from version 3
   std::function<void(const std::vector<ChunkKey>&)> on_leave;
   std::function<void(const protocol::Idle&)> on_idle;
   std::function<void(const ClientError&)> on_closed;  ///< once, and nothing after it
@@ -75,7 +76,8 @@ class WorldStream {
   /// Explicit keys, nearest first, instead of an interest area or besides it; the latest wins. The strips between them
   /// come by themselves; `strips` names others, for chunks that are still drawn and no longer wanted.
   void want(std::vector<protocol::HeldChunk> chunks, std::vector<StripKey> strips = {});
-  /// Bytes of messages that have been consumed; only with gives_credit_itself.
+  /// Bytes of messages that have been consumed; only with gives_credit_itself. Those of an earlier stream count as
+  /// well, where `credit_bytes` was reduced by them; before the welcome they wait for it.
   void give_credit(std::uint64_t bytes);
   /// Says bye.
   void close();

@@ -58,9 +58,13 @@ class WorldViewer::Session {
   }
 
   void close() {
-    is_ended_ = true;
+    if (std::exchange(is_ended_, true)) return;
     retry_.cancel();
-    if (stream_) stream_->close();
+    if (is_closed_) {  // nothing is left that could end
+      events_.push_back({Disconnected{{ErrorCode::kBye, "closed as asked", false}, std::nullopt}, nullptr, 0});
+    } else {
+      stream_->close();
+    }
   }
 
   DecodeQueue& decoding() { return decoding_; }
@@ -93,6 +97,7 @@ class WorldViewer::Session {
     }
     stream.held_strips.assign(strips_.begin(), strips_.end());
     began_ = Clock::now();
+    is_closed_ = false;
     stream_.emplace(loop_, std::move(stream), handlers());
     if (view_) note_look(stream_->look(*view_));
     if (!wanted_.empty()) send_want();
@@ -103,6 +108,9 @@ class WorldViewer::Session {
     out.on_welcome = [this](const WorldInfo& info) { on_welcome(info); };
     out.on_chunk = [this](const ArrivedChunk& chunk) { on_chunk(chunk); };
     out.on_strip = [this](const ArrivedStrip& strip) { on_strip(strip); };
+    out.on_failed = [this](const protocol::Failed& failed) {
+      events_.push_back({Unmade{failed.key, failed.face}, nullptr, 0});
+    };
     out.on_leave = [this](const std::vector<ChunkKey>& keys) { on_leave(keys); };
     out.on_idle = [this](const protocol::Idle& idle) { on_idle(idle); };
     out.on_closed = [this](const ClientError& error) { on_closed(error); };
@@ -168,6 +176,7 @@ class WorldViewer::Session {
 
   void on_closed(const ClientError& error) {
     is_connected_ = false;
+    is_closed_ = true;
     if (is_ended_ || !error.may_pass) {
       is_ended_ = true;
       events_.push_back({Disconnected{error, std::nullopt}, nullptr, 0});
@@ -191,7 +200,10 @@ class WorldViewer::Session {
     is_connected_ = false;
     retry_.cancel();
     stream_.reset();
+    is_closed_ = true;
     events_.clear();
+    decoding_.clear();
+    untaken_bytes_ = 0;
     return Disconnected{{ErrorCode::kProtocol, "a surface of the server: " + std::string(describe(fault)), false}, {}};
   }
 
@@ -209,7 +221,8 @@ class WorldViewer::Session {
   std::uint64_t untaken_bytes_ = 0;
   int attempts_ = 0;
   bool is_connected_ = false;
-  bool is_ended_ = false;
+  bool is_closed_ = false;  ///< the stream has ended: until the next attempt, or for good
+  bool is_ended_ = false;   ///< there will be no other attempt
   Clock::time_point began_{};
   const std::shared_ptr<void> alive_ = std::make_shared<char>();  ///< a timer that fired may find the viewer gone
   asio::steady_timer retry_;

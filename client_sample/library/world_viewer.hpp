@@ -29,7 +29,8 @@ struct ViewerOptions {
   std::string world = "default";              ///< a name of GET /v1/worlds
   std::string client = "talus library";       ///< named in the server's log: say which engine this is
   std::uint64_t credit_bytes = 4ULL << 20U;   ///< under way or not taken yet, at most: more hides latency, less lag.
-                                              ///< From 1 MiB, the largest message, else one chunk could be too large
+                                              ///< From 1.25 MiB: the largest message is 1 MiB, and up to an eighth of
+                                              ///< the credit is on its way back
   bool decodes_in_next = true;                ///< false: only decode_one does, and `next` never takes long
   std::chrono::milliseconds retry_min{250};   ///< wait before the first new attempt; doubles, with a little chance, so
   std::chrono::milliseconds retry_max{8000};  ///< that all clients of a server that comes back do not come as one
@@ -58,16 +59,21 @@ struct StripReady {
   double step_m = 0.0;  ///< counted from the lowest corner of key.key as well
   ChunkMesh mesh;       ///< may be without triangles
 };
+/// The server cannot make this chunk, or this strip of it; it will not come. Go on drawing what is in its place.
+struct Unmade {
+  ChunkKey key;
+  std::optional<ChunkFace> face;  ///< nothing for the chunk itself
+};
 /// No longer part of what was looked at or wanted: may be freed once nothing better is to come in its place.
 struct Forget {
   std::vector<ChunkKey> keys;
 };
-/// Everything that this look, and the latest want, ask for has been handed out.
+/// Everything that this look, and the latest want, ask for has been handed out, but what is Unmade.
 struct Complete {
   std::uint32_t look = 0;  ///< what `look` returned; 0 before the first
 };
 
-using ViewerEvent = std::variant<Connected, Disconnected, ChunkReady, StripReady, Forget, Complete>;
+using ViewerEvent = std::variant<Connected, Disconnected, ChunkReady, StripReady, Unmade, Forget, Complete>;
 
 class WorldViewer {
  public:

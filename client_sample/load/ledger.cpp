@@ -32,7 +32,7 @@ void Ledger::ask(const std::vector<ChunkKey>& keys, double since_s) {
   std::ranges::sort(expected_);
   std::unordered_map<ChunkKey, double, ChunkKeyHash> asked;
   for (const ChunkKey& key : expected_) {
-    if (held_.contains(key)) continue;
+    if (held_.contains(key) || refused_.contains(key)) continue;
     const auto before = asked_.find(key);
     asked[key] = before == asked_.end() ? since_s : before->second;
   }
@@ -60,6 +60,7 @@ void Ledger::wanted(const std::vector<ChunkKey>& keys, double now_s) {
 
 std::optional<double> Ledger::came(const protocol::ChunkHead& head, double now_s) {
   if (!held_.emplace(head.key, head.faces).second) fault(head.key, "came a second time");
+  if (refused_.contains(head.key)) fault(head.key, "came though it had been refused");
   const auto asked = asked_.find(head.key);
   if (asked == asked_.end()) return std::nullopt;
   const double waited_s = now_s - asked->second;
@@ -67,9 +68,15 @@ std::optional<double> Ledger::came(const protocol::ChunkHead& head, double now_s
   return waited_s;
 }
 
+void Ledger::refused(const ChunkKey& key) {
+  if (held_.contains(key)) fault(key, "was refused after it had come");
+  if (!refused_.insert(key).second) fault(key, "was refused a second time");
+  asked_.erase(key);
+}
+
 void Ledger::left(const std::vector<ChunkKey>& keys) {
   for (const ChunkKey& key : keys) {
-    if (held_.erase(key) == 0) fault(key, "was left without having come");
+    if (held_.erase(key) + refused_.erase(key) == 0) fault(key, "was left without having come");
   }
 }
 
@@ -77,9 +84,9 @@ void Ledger::complete(const protocol::Idle& idle) {
   // Of an older view: the next one is on its way.
   if (idle.view_sequence != 0 && (accepted_ != idle.view_sequence || last_look_ != idle.view_sequence)) return;
   for (const ChunkKey& key : expected_) {
-    if (!held_.contains(key)) fault(key, "never came, and the view is called complete");
+    if (!held_.contains(key) && !refused_.contains(key)) fault(key, "never came, and the view is called complete");
   }
-  if (held_.size() <= expected_.size()) return;
+  if (held_.size() + refused_.size() <= expected_.size()) return;
   for (const auto& [key, faces] : held_) {
     if (!std::ranges::binary_search(expected_, key)) fault(key, "is not part of the view and was not left");
   }
@@ -87,6 +94,7 @@ void Ledger::complete(const protocol::Idle& idle) {
 
 void Ledger::resumed() {
   looks_.clear();
+  refused_.clear();
   asked_.clear();
   expected_.clear();
   accepted_.reset();

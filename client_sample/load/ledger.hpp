@@ -1,4 +1,5 @@
-// What one viewer was promised and what it got: every chunk of a view or a want comes, once, and nothing else stays.
+// What one viewer was promised and what it got: every chunk of a view or a want comes or is refused, once, and nothing
+// else stays.
 // Pure; times are seconds of one clock.
 #pragma once
 
@@ -7,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "protocol/interest_area.hpp"
@@ -25,6 +27,8 @@ class Ledger {
 
   /// How long the chunk was waited for; nothing if it was not asked for any more, as happens when a view moves on.
   std::optional<double> came(const protocol::ChunkHead& head, double now_s);
+  /// The server says that it cannot make the chunk: the other answer that counts.
+  void refused(const ChunkKey& key);
   void left(const std::vector<ChunkKey>& keys);
   /// Everything must be here, and nothing besides.
   void complete(const protocol::Idle& idle);
@@ -47,6 +51,7 @@ class Ledger {
   std::vector<ChunkKey> expected_;                            ///< of the latest view and want, sorted
   std::unordered_map<ChunkKey, double, ChunkKeyHash> asked_;  ///< expected and not here, since when
   std::unordered_map<ChunkKey, std::uint8_t, ChunkKeyHash> held_;
+  std::unordered_set<ChunkKey, ChunkKeyHash> refused_;  ///< and not left
   std::vector<std::string> faults_;
 };
 

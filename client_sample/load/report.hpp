@@ -40,7 +40,7 @@ enum class Tally : std::uint8_t {
   kBytes,     ///< of payloads
   kAsked,     ///< HTTP requests, and keys wanted by name
   kAnswered,  ///< of those
-  kRefused,   ///< 429 or 503
+  kRefused,   ///< 429, 503, or told on a stream that it cannot be made
   kBroken,    ///< connections that failed under a request, or were ended by the server
   kReconnects,
   kEnd

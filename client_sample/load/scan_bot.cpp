@@ -39,6 +39,11 @@ void ScanBot::connect() {
     if (const auto waited_s = ledger_.came(chunk.head, stage_.now_s())) mine().record(Measure::kChunk, *waited_s);
     tell_faults();
   };
+  handlers.on_failed = [this](const protocol::Failed& failed) {
+    mine().count(Tally::kRefused);
+    if (!failed.face) ledger_.refused(failed.key);
+    tell_faults();
+  };
   handlers.on_leave = [this](const std::vector<ChunkKey>& keys) {
     mine().count(Tally::kLeaves, keys.size());
     ledger_.left(keys);

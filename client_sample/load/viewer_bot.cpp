@@ -54,6 +54,11 @@ client::StreamHandlers ViewerBot::handlers() {
     mine().count(Tally::kBytes, strip.payload.size());
     owed_bytes_ += strip.message_bytes;
   };
+  out.on_failed = [this](const protocol::Failed& failed) {
+    mine().count(Tally::kRefused);
+    if (ledger_ && !failed.face) ledger_->refused(failed.key);
+    tell_faults();
+  };
   out.on_leave = [this](const std::vector<ChunkKey>& keys) {
     mine().count(Tally::kLeaves, keys.size());
     if (ledger_) ledger_->left(keys);
@@ -162,6 +167,7 @@ void ViewerBot::on_closed(const client::ClientError& error) {
 }
 
 void ViewerBot::tell_faults() {
+  if (!ledger_) return;
   for (std::string& what : ledger_->take_faults()) {
     stage_.report.fault(std::string(name_of(plan_.kind)) + ": " + std::move(what));
   }

@@ -58,6 +58,11 @@ int serve(const talus::server::Settings& settings, int argc, const char* const* 
   std::fflush(stdout);
   for (signals.acquire(); !is_stopping; signals.acquire()) reload(**server, argc, argv);
   (*server)->stop();
+  if ((*server)->has_hung_job()) {
+    // It runs on in code that a normal end would take down under it.
+    std::fflush(nullptr);
+    std::_Exit(EXIT_SUCCESS);
+  }
   return EXIT_SUCCESS;
 }
 

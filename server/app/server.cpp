@@ -19,6 +19,8 @@ namespace talus::server {
 namespace {
 
 constexpr std::size_t kMiB = 1024 * 1024;
+/// Threads of the pool that may take the place of hung ones; then each hung job costs one.
+constexpr std::size_t kSpareThreads = 8;
 
 std::size_t processors() {
   return std::max(1U, std::thread::hardware_concurrency());
@@ -51,8 +53,8 @@ struct Server::Parts {
         files(std::move(viewer)),
         cache(settings.cache_mib * kMiB),
         stored(worlds),
-        pool({worker_threads(settings), settings.cold_queue}),
-        builder(worlds, clock, metrics, pool.threads()),
+        pool({worker_threads(settings), settings.cold_queue, settings.job_s, kSpareThreads}),
+        builder(worlds, clock, metrics, pool.thread_indices()),
         chunks(cache, stored, pool, builder, clock, metrics),
         net{worlds, files, clock, chunks, pool, metrics, worlds_json(worlds), PolicySlot(std::move(policy)),
             {},     {},    {},    {},     {},   {}},
@@ -85,15 +87,17 @@ struct Server::Parts {
 
 std::expected<void, std::string> Server::Parts::open_disk() {
   if (settings.disk_cache.empty()) return {};
-  auto disk = DiskCache::open({settings.disk_cache, settings.disk_cache_mib * kMiB, pool.threads()}, clock, metrics);
+  auto disk =
+      DiskCache::open({settings.disk_cache, settings.disk_cache_mib * kMiB, pool.thread_indices()}, clock, metrics);
   if (!disk) return std::unexpected("disk_cache: " + disk.error());
   stored.attach(std::move(*disk));
   return {};
 }
 
 bool Server::Parts::speaks_tls(std::string_view listener) const {
+  if (settings.tls_certificate.empty()) return false;
   const auto& on = settings.tls_on;
-  return !settings.tls_certificate.empty() && std::find(on.begin(), on.end(), listener) != on.end();
+  return on.empty() ? listener != "admin_listen" : std::find(on.begin(), on.end(), listener) != on.end();
 }
 
 std::expected<void, std::string> Server::Parts::listen() {
@@ -150,8 +154,13 @@ void Server::Parts::add_readings() {
         [this] { return static_cast<double>(settings.cold_queue); });
   gauge("talus_queue_seconds", "When the last of the waiting jobs is expected to start",
         [this] { return pool.wait_s(); });
-  gauge("talus_pool_threads", "Threads that make chunks", [this] { return static_cast<double>(pool.threads()); });
+  gauge("talus_pool_threads", "Threads that make chunks, less those that hung jobs have cost",
+        [this] { return static_cast<double>(pool.threads()); });
   gauge("talus_flights", "Chunks waiting or being made", [this] { return static_cast<double>(chunks.flights()); });
+  gauge("talus_jobs_hanging", "Jobs that were given up and have not come back",
+        [this] { return static_cast<double>(pool.hanging()); });
+  metrics.watch({"talus_jobs_hung_total", "Jobs given up because they ran for job_s", {}, {}, true},
+                [this] { return static_cast<double>(pool.hung()); });
   metrics.watch({"talus_jobs_failed_total", "Jobs that let an exception escape", {}, {}, true},
                 [this] { return static_cast<double>(pool.failed()); });
   gauge("talus_connections", "Connections open", [this] { return static_cast<double>(net.connections.inside()); });
@@ -216,6 +225,13 @@ Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Server::~Server() {
   parts_->settings.drain_s = 0;
   stop();
+  // A job that hangs still uses all of this, and cannot be ended.
+  if (has_hung_job()) [[maybe_unused]]
+    const Parts* left = parts_.release();
+}
+
+bool Server::has_hung_job() const {
+  return parts_->pool.hanging() != 0;
 }
 
 const std::string& Server::ready_line() const {

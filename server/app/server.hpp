@@ -37,8 +37,12 @@ class Server {
   std::expected<void, std::string> reload(const Settings& settings);
   /// Counts and logs that settings were not taken over.
   void refuse_reload(std::string_view why);
-  /// Refuses the new, lets the old end within `drain_s`, then ends it. Returns when all threads have ended.
+  /// Refuses the new, lets the old end within `drain_s`, then ends it. Returns when all threads have ended, but for
+  /// those of hung jobs.
   void stop();
+  /// Whether a job was given up and still runs. The process must then not end normally: the job would see what it uses
+  /// destroyed.
+  bool has_hung_job() const;
 
  private:
   struct Parts;

@@ -51,6 +51,7 @@ const std::array kTable{
   SettingInfo{"log_level", &of_settings<&S::log_level>, 0, 0, "LEVEL", "debug, info, warning, error or off; JSON lines on standard error."},
   SettingInfo{"drain_s", &of_settings<&S::drain_s>, 0, 600, "S", "On SIGTERM, how long answers and sessions may take to end."},
   SettingInfo{"cold_queue", &of_settings<&S::cold_queue>, 1, 65536, "N", "Chunks that may wait to be made, for each of HTTP and streams; then 503.", true},
+  SettingInfo{"job_s", &of_settings<&S::job_s>, 0.1, 3600, "S", "A chunk or a question whose making takes so long is given up, and its thread replaced; then 503.", true},
   SettingInfo{"connections", &of_limits<&L::connections>, 1, 1000000, "N", "Connections in all.", true},
   SettingInfo{"connections_per_address", &of_limits<&L::connections_per_address>, 1, 1000000, "N", "Connections from one address.", true},
   SettingInfo{"request_line_bytes", &of_limits<&L::request_line_bytes>, 256, 65536, "N", "Longest HTTP request line; then 414.", true},
@@ -78,9 +79,9 @@ const std::array kTable{
 // clang-format on
 
 /// What is built once, at the start.
-constexpr std::array<std::string_view, 12> kFixed{"world",   "listen",      "tcp_listen",     "admin_listen",
-                                                  "threads", "net_threads", "cache_mib",      "disk_cache",
-                                                  "viewer",  "tls_on",      "disk_cache_mib", "cold_queue"};
+constexpr std::array<std::string_view, 13> kFixed{
+    "world",      "listen", "tcp_listen", "admin_listen",   "threads",    "net_threads", "cache_mib",
+    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s"};
 
 bool is_fixed(std::string_view key) {
   return std::find(kFixed.begin(), kFixed.end(), key) != kFixed.end();
@@ -204,6 +205,9 @@ std::vector<SettingFault> setting_faults(const Settings& settings) {
   for (const std::string& name : settings.tls_on) {
     if (name == "listen" || name == "tcp_listen" || name == "admin_listen") continue;
     faults.push_back({"tls_on", fmt::format("'{}': expected listen, tcp_listen or admin_listen", name)});
+  }
+  if (!settings.tls_on.empty() && settings.tls_certificate.empty()) {
+    faults.push_back({"tls_on", "there is no TLS without tls_certificate and tls_key"});
   }
   if (!log_level(settings.log_level)) {
     faults.push_back(

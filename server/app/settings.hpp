@@ -26,16 +26,17 @@ struct Settings {
   std::size_t cache_mib = 256;
   std::string disk_cache;  ///< folder; empty: none
   std::size_t disk_cache_mib = 4096;
-  std::string viewer;                                          ///< folder of the browser viewer; empty: none
-  std::string tls_certificate;                                 ///< PEM file; empty: no TLS
-  std::string tls_key;                                         ///< PEM file
-  std::vector<std::string> tls_on = {"listen", "tcp_listen"};  ///< listeners, when there is a certificate
-  std::vector<std::string> token_keys;                         ///< files; empty: everybody may read
-  std::vector<std::string> allowed_origins;                    ///< empty: pages of any origin
-  std::vector<std::string> trusted_proxies;                    ///< addresses and networks
+  std::string viewer;                        ///< folder of the browser viewer; empty: none
+  std::string tls_certificate;               ///< PEM file; empty: no TLS
+  std::string tls_key;                       ///< PEM file
+  std::vector<std::string> tls_on;           ///< listeners; empty: listen and tcp_listen
+  std::vector<std::string> token_keys;       ///< files; empty: everybody may read
+  std::vector<std::string> allowed_origins;  ///< empty: pages of any origin
+  std::vector<std::string> trusted_proxies;  ///< addresses and networks
   std::string log_level = "info";
   double drain_s = 10;
   std::size_t cold_queue = 256;
+  double job_s = 20;
   NetLimits limits;
 };
 

@@ -24,17 +24,18 @@ constexpr std::size_t kPumpBelowBytes = 256 * 1024;
 }  // namespace
 
 ChunkFeed::ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world,
-                     const MeshFormat& format, std::uint64_t credit_bytes, bool takes_strips, ClientId client,
+                     const MeshFormat& format, std::uint64_t credit_bytes, std::uint16_t version, ClientId client,
                      asio::io_context::executor_type executor, std::weak_ptr<void> owner)
     : net_(net),
       limits_(limits),
       writer_(writer),
       world_(world),
       format_(format),
+      takes_failures_(version >= protocol::kVersionOfFailures),
       client_(client),
       executor_(std::move(executor)),
       owner_(std::move(owner)),
-      viewer_(net.worlds[world]->shape(), credit_bytes, takes_strips) {
+      viewer_(net.worlds[world]->shape(), credit_bytes, version >= protocol::kVersionOfStrips) {
   net_.sessions.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -120,6 +121,8 @@ bool ChunkFeed::request_next() {
     offer(piece, std::move(*payload));
   } else if (auto* ticket = std::get_if<ChunkService::Ticket>(&answer)) {
     tickets_[piece] = std::move(*ticket);
+  } else if (std::get<ChunkError>(answer) == ChunkError::kFailed) {
+    fail(piece);
   } else {
     viewer_.put_back(piece);
     retry_at_ = net_.clock.now() + seconds(kRetryS);
@@ -136,10 +139,15 @@ void ChunkFeed::on_piece(const Piece& piece, const ChunkResult& result) {
     viewer_.put_back(piece);
     retry_at_ = net_.clock.now() + seconds(kRetryS);
   } else {
-    // It would fail again: the place stays as it is at the client, and the view can still become complete.
-    viewer_.deliver(piece, 0);
+    fail(piece);
   }
   pump();
+}
+
+/// It would fail again: the place stays as it is at the client, and the view can still become complete.
+void ChunkFeed::fail(const Piece& piece) {
+  const bool is_wanted = viewer_.deliver(piece, 0) == Viewer::Delivery::kSend;
+  if (is_wanted && takes_failures_) writer_.send_bulk(protocol::Failed{piece.key, piece.face});
 }
 
 void ChunkFeed::offer(const Piece& piece, PayloadRef payload) {

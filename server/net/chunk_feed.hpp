@@ -17,10 +17,10 @@ class ChunkFeed {
  public:
   /// `net`, `limits` and `writer` must outlive the feed; `owner` keeps the feed alive while an answer is under way.
   /// Counts as a session from here to its destruction. `client` is whose share of the pool its chunks take.
-  /// `format` (of kMeshFormats) is what the client decodes.
+  /// `format` (of kMeshFormats) is what the client decodes, `version` the protocol's that it speaks.
   ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writer, std::size_t world, const MeshFormat& format,
-            std::uint64_t credit_bytes, bool takes_strips, ClientId client, asio::io_context::executor_type executor,
-            std::weak_ptr<void> owner);
+            std::uint64_t credit_bytes, std::uint16_t version, ClientId client,
+            asio::io_context::executor_type executor, std::weak_ptr<void> owner);
   ~ChunkFeed();
   ChunkFeed(const ChunkFeed&) = delete;
   ChunkFeed& operator=(const ChunkFeed&) = delete;
@@ -38,6 +38,7 @@ class ChunkFeed {
   void pump();
   bool request_next();
   void on_piece(const Piece& piece, const ChunkResult& result);
+  void fail(const Piece& piece);
   void offer(const Piece& piece, PayloadRef payload);
   std::size_t window() const;
 
@@ -46,6 +47,7 @@ class ChunkFeed {
   FrameWriter& writer_;
   const std::size_t world_;
   const MeshFormat& format_;
+  const bool takes_failures_;
   const ClientId client_;
   const asio::io_context::executor_type executor_;
   const std::weak_ptr<void> owner_;

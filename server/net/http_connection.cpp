@@ -276,6 +276,7 @@ Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
   write_head(answer, options, head_);
   const auto body = answer.body();
   const bool has_body = !is_head_only && answer.status != 204 && answer.status != 304;
+  if (has_body) net_.metrics.add(Count::kHttpBodyBytes, body.size());
   const std::array<asio::const_buffer, 2> buffers{
       asio::buffer(head_), has_body ? asio::const_buffer(body.data(), body.size()) : asio::const_buffer{}};
   const Instant start = net_.clock.now();

@@ -28,6 +28,8 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
   ChunkResult result = std::unexpected(ChunkError::kBusy);
   if (auto* payload = std::get_if<PayloadRef>(&answer)) {
     result = std::move(*payload);
+  } else if (const auto* error = std::get_if<ChunkError>(&answer)) {
+    result = std::unexpected(*error);
   } else if (std::holds_alternative<ChunkService::Ticket>(answer)) {
     waiting_since_ = net_.clock.now();
     while (waiting_since_ && !chunk_result_) co_await bell_.wait();
@@ -59,7 +61,19 @@ Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Que
       bell_.ring();
     });
   };
-  const JobPool::Pushed pushed = net_.pool.push({client, Lane::kView, 0.0, kQueryCostS}, std::move(work));
+  // Weak: a job may outlive whoever asked, and must not be the one that ends it, on a thread that is not its own.
+  JobPool::OnHang on_hang = [this, weak = owner_, asked] {
+    std::shared_ptr<void> owner = weak.lock();
+    if (owner == nullptr) return;
+    log(LogLevel::kError, "query given up", {{"fault", "its job does not end"}});
+    asio::post(executor_, [this, owner = std::move(owner), asked] {
+      if (asked != asked_ || !waiting_since_) return;
+      query_result_ = unavailable("query_failed", "this question could not be answered");
+      bell_.ring();
+    });
+  };
+  const JobPool::Pushed pushed =
+      net_.pool.push({client, Lane::kView, 0.0, kQueryCostS}, std::move(work), std::move(on_hang));
   JobPool::tell_displaced(pushed.displaced);
   const JobPool::JobRef job = pushed.job;
   if (job == nullptr) {

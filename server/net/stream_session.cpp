@@ -159,7 +159,8 @@ void StreamSession::take(std::span<const std::byte> bytes) {
     const auto inbound = framing_->next();
     if (!inbound) break;
     net_.metrics.record(Hop::kNextMessage, net_.clock.now() - start);
-    partial_since_ = Instant::max();
+    // A ping between the parts of a message does not begin the message anew.
+    if (inbound->kind == Inbound::Kind::kMessage || framing_->is_between_messages()) partial_since_ = Instant::max();
     on_inbound(*inbound);
   }
   if (!framing_->is_between_messages()) partial_since_ = std::min(partial_since_, received_at_);
@@ -238,10 +239,9 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
   }
   world_ = named;
   const std::uint16_t version = std::min(hello.version_high, protocol::kVersionHigh);
-  const bool takes_strips = version >= protocol::kVersionOfStrips;
   const std::uint64_t number = net_.session_numbers.fetch_add(1, std::memory_order_relaxed);
   const ClientId client = 2 * (number + 1);  // even: addresses have odd ones
-  feed_.emplace(net_, limits_, writer_, named, *format, hello.credit_bytes, takes_strips, client, executor_,
+  feed_.emplace(net_, limits_, writer_, named, *format, hello.credit_bytes, version, client, executor_,
                 weak_from_this());
   phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);

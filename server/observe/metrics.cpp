@@ -58,6 +58,7 @@ constexpr std::array<CountInfo, static_cast<std::size_t>(Count::kEnd)> kCounts{{
     {"talus_chunk_requests_total", "outcome", "displaced", ""},
     {"talus_chunk_requests_total", "outcome", "cancelled", ""},
     {"talus_chunk_requests_total", "outcome", "failed", ""},
+    {"talus_chunk_requests_total", "outcome", "hung", ""},
     {"talus_disk_cache_total", "outcome", "hit", "Entries of the disk cache by what became of them"},
     {"talus_disk_cache_total", "outcome", "miss", ""},
     {"talus_disk_cache_total", "outcome", "bad", ""},

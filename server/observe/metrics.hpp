@@ -79,6 +79,7 @@ enum class Count : std::uint8_t {
   kChunkDisplaced,
   kChunkCancelled,
   kChunkFailed,
+  kChunkHung,
   kDiskHit,
   kDiskMiss,
   kDiskBad,

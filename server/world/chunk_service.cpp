@@ -8,6 +8,21 @@
 
 namespace talus::server {
 
+namespace {
+
+void log_chunk(std::string_view event, const PayloadName& name, std::string_view fault) {
+  log(LogLevel::kError, event,
+      {{"world", std::uint64_t{name.world}},
+       {"lod", std::int64_t{name.key.lod}},
+       {"x", std::int64_t{name.key.x}},
+       {"y", std::int64_t{name.key.y}},
+       {"z", std::int64_t{name.key.z}},
+       {"format", std::uint64_t{static_cast<unsigned>(name.format)}},
+       {"fault", fault}});
+}
+
+}  // namespace
+
 ChunkService::Ticket::Ticket(Ticket&& other) noexcept
     : service_(std::exchange(other.service_, nullptr)), name_(other.name_), id_(other.id_) {}
 
@@ -88,12 +103,19 @@ ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, const 
     metrics_.add(Count::kChunkHit);
     return payload;
   }
+  if (std::ranges::find(hung_, name) != hung_.end()) {
+    metrics_.add(Count::kChunkFailed);
+    return ChunkError::kFailed;
+  }
   const JobTerms terms{asker.client, asker.lane, asker.urgency, builder_.predicted_s(name)};
-  JobPool::Work work = [this, name, id, pushed = clock_.now()](const JobPool::Context& context) {
+  const auto job_end = std::make_shared<JobEnd>();
+  JobPool::Work work = [this, name, id, job_end, pushed = clock_.now()](const JobPool::Context& context) {
     metrics_.record(Hop::kQueue, clock_.now() - pushed);
     run(name, id, context);
+    end(name, *job_end);
   };
-  JobPool::Pushed pushed = pool_.push(terms, std::move(work));
+  JobPool::Pushed pushed =
+      pool_.push(terms, std::move(work), [this, name, id, job_end] { give_up(name, id, *job_end); });
   displaced = std::move(pushed.displaced);
   if (pushed.job == nullptr) {
     metrics_.add(Count::kChunkShed);
@@ -130,15 +152,32 @@ void ChunkService::make(const PayloadName& name, std::uint64_t flight_id, const 
     publish(name, flight_id, built);
     stored_.store(name, built, DiskCache::Commit::kNow);  // nobody waits for it
   } catch (const std::exception& fault) {
-    metrics_.add(Count::kChunkFailed);
-    log(LogLevel::kError, "chunk failed",
-        {{"lod", std::int64_t{name.key.lod}},
-         {"x", std::int64_t{name.key.x}},
-         {"y", std::int64_t{name.key.y}},
-         {"z", std::int64_t{name.key.z}},
-         {"fault", std::string_view(fault.what())}});
-    publish(name, flight_id, std::unexpected(ChunkError::kFailed));
+    fail(name, flight_id, fault.what());
+  } catch (...) {
+    fail(name, flight_id, "thrown, and no exception");
   }
+}
+
+void ChunkService::fail(const PayloadName& name, std::uint64_t flight_id, std::string_view fault) {
+  metrics_.add(Count::kChunkFailed);
+  log_chunk("chunk failed", name, fault);
+  publish(name, flight_id, std::unexpected(ChunkError::kFailed));
+}
+
+void ChunkService::give_up(const PayloadName& name, std::uint64_t flight_id, const JobEnd& end) {
+  metrics_.add(Count::kChunkHung);
+  log_chunk("chunk given up", name, "its job does not end");
+  {
+    const std::lock_guard lock(mutex_);
+    if (!end.is_reached) hung_.push_back(name);
+  }
+  publish(name, flight_id, std::unexpected(ChunkError::kFailed));
+}
+
+void ChunkService::end(const PayloadName& name, JobEnd& end) {
+  const std::lock_guard lock(mutex_);
+  end.is_reached = true;
+  std::erase(hung_, name);
 }
 
 void ChunkService::publish(const PayloadName& name, std::uint64_t flight_id, ChunkResult result) {

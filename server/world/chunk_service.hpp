@@ -3,7 +3,8 @@
 //
 // Single flight: however many ask for an absent chunk, one job makes it. Every asker holds a ticket; when the last one
 // drops its ticket nobody wants the chunk, and the job is taken back or, if it runs, told to stop. A job is served when
-// the turn of any of its askers comes (schedule/fair_queue). Any thread.
+// the turn of any of its askers comes (schedule/fair_queue). A chunk whose job hangs is refused for as long as it does,
+// so that asking again costs no other thread. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ namespace talus::server {
 
 enum class ChunkError : std::uint8_t {
   kBusy,   ///< the lane is full, or others were due more than this asker: come again
-  kFailed  ///< the chunk could not be made
+  kFailed  ///< the chunk could not be made, or hangs whoever makes it
 };
 
 /// Who wants a chunk, and how soon.
@@ -99,6 +100,13 @@ class ChunkService {
   Answer join_or_start(const PayloadName& name, const Asker& asker, Done done, JobPool::JobRef& displaced);
   void run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
   void make(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
+  void fail(const PayloadName& name, std::uint64_t flight_id, std::string_view fault);
+  /// Shared by a job and whoever gives it up; under mutex_.
+  struct JobEnd {
+    bool is_reached = false;
+  };
+  void give_up(const PayloadName& name, std::uint64_t flight_id, const JobEnd& end);
+  void end(const PayloadName& name, JobEnd& end);
   void publish(const PayloadName& name, std::uint64_t flight_id, ChunkResult result);
   void set_urgency(const PayloadName& name, std::uint64_t id, Lane lane, double urgency);
   void follow_waiters(const Flight& flight);
@@ -120,6 +128,7 @@ class ChunkService {
     Flight flight;
   };
   std::unordered_map<PayloadName, Entry, PayloadNameHash> flights_;
+  std::vector<PayloadName> hung_;  ///< one for each thread of the pool that hangs
 };
 
 }  // namespace talus::server

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <thread>
 
 #include "client_sample/cli/commands.hpp"
 #include "tests/sim/running_server.hpp"
 #include "tests/sim/stream_peer.hpp"
+#include "tests/support/certificate.hpp"
 
 namespace talus::server {
 namespace {
@@ -107,6 +109,24 @@ TEST(TokenSim, AStreamIsOpenedByItsUrlOrByItsHello) {
   EXPECT_EQ(get(server->http_address(), "/v1/worlds/default/stream?token=nonsense", upgrade).status, 401);
 }
 
+TEST(TokenSim, PregenGoesToAServerWithATokenAndACertificateOfItsOwn) {
+  const Keys keys;
+  const auto files = test::make_certificate(testing::TempDir() + "doors_sim_pregen");
+  Settings settings = guarded(keys);
+  settings.tls_certificate = files.certificate;
+  settings.tls_key = files.key;
+  RunningServer server(settings);
+  cli::PregenOptions options;
+  options.server.url = "https://" + server->http_address();
+  options.server.ca_file = files.certificate;
+  options.area = "0,0,0.5";
+  options.lod_low = options.lod_high = 5;
+  EXPECT_EQ(cli::pregen(options), cli::kFailed) << "without a token";
+  options.server.token = keys.token("default");
+  EXPECT_EQ(cli::pregen(options), cli::kDone);
+  EXPECT_GT(server.count(Count::kChunksSent), 0U);
+}
+
 TEST(OriginSim, OnlyPagesOfNamedOriginsStreamAndRead) {
   Settings settings = quiet_settings();
   settings.allowed_origins = {"https://maps.example.org"};
@@ -180,6 +200,23 @@ TEST(SlowSim, AMessageThatTricklesInIsGivenUpWithItsReason) {
   StreamPeer web(server->http_address());
   ASSERT_TRUE(web.open(1'000'000));
   web.peer.send(std::string("\x82\xA0\x00\x00\x00\x00half", 10));
+  EXPECT_TRUE(web.next_of<protocol::Bye>().has_value());
+}
+
+TEST(SlowSim, PingsBetweenThePartsOfAMessageGainItNoTime) {
+  Settings settings = quiet_settings();
+  settings.limits.message_s = 0.5;
+  settings.limits.messages_per_s = 1000;
+  RunningServer server(settings);
+  StreamPeer web(server->http_address());
+  ASSERT_TRUE(web.open(1'000'000));
+  web.peer.send(std::string("\x02\x82\x00\x00\x00\x00hi", 8));  // the first part of two
+  // As long as the server goes on with us: without an end this would be a minute of pings.
+  for (int i = 0; i < 1200 && server.count(Count::kMessageTimeout) == 0; ++i) {
+    web.send_bytes("p", 9);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_EQ(server.count(Count::kMessageTimeout), 1U);
   EXPECT_TRUE(web.next_of<protocol::Bye>().has_value());
 }
 

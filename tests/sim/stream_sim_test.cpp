@@ -179,7 +179,7 @@ TEST_P(StreamSim, RefusesHellosItCannotServeWithAReason) {
     stream.send(hello);
     const auto refused = stream.next_of<protocol::Refused>();
     EXPECT_TRUE(stream.peer.is_ended_by_other());
-    EXPECT_EQ(refused->versions, (std::vector<std::uint16_t>{1, 2}));
+    EXPECT_EQ(refused->versions, (std::vector<std::uint16_t>{1, 2, 3}));
     return refused->reason;
   };
   protocol::Hello hello = good;

@@ -1,7 +1,7 @@
 // The program `talus` against a running server, and against the same world evaluated on the spot.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -122,6 +122,17 @@ test('pregen fills the disk cache, goes on where it was, and a server that start
     const other = await talus('pregen', '--server', `http://${first.ready.http}`, '--area', '9,9,1', '--progress', progress);
     assert.equal(other.code, 1);
     assert.match(other.err, /something else/);
+    const head = readFileSync(progress, 'utf8').split('\n')[0];
+    for (const beyond of [`${Number(all) + 1}`, '18446744073709551615']) {
+      writeFileSync(progress, `${head}\n${beyond}\n`);
+      const refused = await pregen(first, '--progress', progress);
+      assert.equal(refused.code, 1, beyond);
+      assert.match(refused.err, /something else/);
+    }
+    writeFileSync(progress, head.padEnd(5000, ' '));
+    const large = await pregen(first, '--progress', progress);
+    assert.equal(large.code, 1);
+    assert.match(large.err, /larger than 4096 bytes/);
   } finally {
     await first.stop();
   }

@@ -21,6 +21,18 @@ std::variant<Serve, PrintAndEnd> parse(Args... args) {
   return parse_command_line(static_cast<int>(argv.size()), argv.data());
 }
 
+TEST(Settings, NamesAListenerForTlsOnlyWithACertificate) {
+  Settings settings;
+  EXPECT_TRUE(setting_faults(settings).empty());
+  settings.tls_on = {"listen"};
+  const auto faults = setting_faults(settings);
+  ASSERT_EQ(faults.size(), 1U) << "not in clear without a word";
+  EXPECT_EQ(faults[0].key, "tls_on");
+  settings.tls_certificate = "a.pem";
+  settings.tls_key = "a.key";
+  EXPECT_TRUE(setting_faults(settings).empty());
+}
+
 TEST(Settings, ReadBackWhatTheyPrint) {
   Settings settings;
   settings.world = {"a.toml", "b \"c\".toml"};

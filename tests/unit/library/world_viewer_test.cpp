@@ -192,15 +192,69 @@ TEST_F(WorldViewerTest, OffersANewConnectionNoMoreThanItHasRoomFor) {
   EXPECT_EQ(std::get<protocol::Hello>(server.heard()[0]).credit_bytes, 1'000'000 - head.size() - surface.size());
 }
 
+TEST_F(WorldViewerTest, GivesBackAfterAReconnectWhatWasTakenBeforeTheWelcome) {
+  ViewerOptions options;
+  options.credit_bytes = 1000;  // less than the surface: the new connection begins without any credit
+  open(options);
+  ASSERT_TRUE(is_greeted());
+  server.say(welcome());
+  const Bytes surface = surface_of({0, 0, 0, 0}, 3);
+  ASSERT_GT(surface.size(), 1000U);
+  say_chunk({0, 0, 0, 0}, surface);
+  ASSERT_TRUE(run_until(loop, [&] { return viewer->held() == 1; }));
+  server.hang_up();
+  ASSERT_TRUE(run_until(loop, [&] { return !viewer->is_connected(); }));
+  server.accept();
+  ASSERT_TRUE(is_greeted());
+  EXPECT_EQ(std::get<protocol::Hello>(server.heard()[0]).credit_bytes, 0U);
+  take<Connected>();
+  take<ChunkReady>();
+  take<Disconnected>();
+  server.say(welcome());
+  ASSERT_TRUE(run_until(loop, [&] { return server.heard_of<protocol::Credit>() == 1; }))
+      << "nobody would ever send anything again";
+  const auto head = protocol::encode(
+      protocol::ChunkHead{{0, 0, 0, 0}, 0, ChunkKind::kMesh, static_cast<std::uint32_t>(surface.size())});
+  EXPECT_EQ(std::get<protocol::Credit>(server.heard().back()).bytes, head.size() + surface.size());
+}
+
+TEST_F(WorldViewerTest, SaysThatItIsClosedBetweenTwoAttemptsAsWell) {
+  open();
+  ASSERT_TRUE(is_greeted());
+  server.hang_up();
+  EXPECT_TRUE(take<Disconnected>().retry_in);
+  viewer->close();
+  EXPECT_FALSE(take<Disconnected>().retry_in);
+  viewer->close();
+  EXPECT_FALSE(viewer->next()) << "once";
+}
+
+TEST_F(WorldViewerTest, SaysWhatTheServerCannotMakeAndDoesNotHoldIt) {
+  open();
+  ASSERT_TRUE(is_greeted());
+  server.say(welcome({}, 3));
+  server.say(protocol::Failed{{0, 1, 1, 1}});
+  server.say(protocol::Failed{{1, 0, 0, 0}, ChunkFace::kNy});
+  take<Connected>();
+  const auto chunk = take<Unmade>();
+  EXPECT_EQ(chunk.key, (ChunkKey{0, 1, 1, 1}));
+  EXPECT_FALSE(chunk.face);
+  EXPECT_EQ(take<Unmade>().face, ChunkFace::kNy);
+  EXPECT_EQ(viewer->held(), 0U);
+}
+
 TEST_F(WorldViewerTest, EndsWithTheFirstSurfaceThatIsNone) {
   open();
   ASSERT_TRUE(is_greeted());
   server.say(welcome());
   say_chunk({0, 0, 0, 0}, Bytes(100, std::byte{7}));
+  say_chunk({0, 1, 0, 0}, surface_of({0, 1, 0, 0}, 1));
+  ASSERT_TRUE(run_until(loop, [&] { return viewer->held() == 2; }));
   take<Connected>();
   const auto lost = take<Disconnected>();
   EXPECT_EQ(lost.why.code, ErrorCode::kProtocol);
   EXPECT_FALSE(lost.retry_in);
+  EXPECT_FALSE(viewer->decode_one(std::chrono::milliseconds(0))) << "what came behind it is dropped";
 }
 
 TEST_F(WorldViewerTest, KeepsTheOrderHoweverManyThreadsDecode) {

@@ -89,6 +89,26 @@ TEST_F(LedgerTest, MissesWhatDidNotCome) {
   EXPECT_THAT(ledger.take_faults(), ElementsAre(HasSubstr("never came")));
 }
 
+TEST_F(LedgerTest, TakesARefusalForAnAnswerOnce) {
+  for (std::size_t i = 1; i < area.size(); ++i) ledger.came(air(area[i]), 11);
+  ledger.refused(area[0]);
+  ledger.complete({1, area.size()});
+  EXPECT_THAT(ledger.take_faults(), IsEmpty());
+  ledger.refused(area[0]);
+  EXPECT_THAT(ledger.take_faults(), ElementsAre(HasSubstr("refused a second time")));
+  ledger.came(air(area[0]), 12);
+  EXPECT_THAT(ledger.take_faults(), ElementsAre(HasSubstr("though it had been refused")));
+  ledger.refused(area[1]);
+  EXPECT_THAT(ledger.take_faults(), ElementsAre(HasSubstr("refused after it had come")));
+}
+
+TEST_F(LedgerTest, LetsARefusedChunkBeAskedForAgainOnceItIsLeft) {
+  ledger.refused(area[0]);
+  ledger.left({area[0]});
+  ledger.came(air(area[0]), 12);
+  EXPECT_THAT(ledger.take_faults(), IsEmpty());
+}
+
 TEST_F(LedgerTest, SeesWhatComesTwiceOrStaysTooLong) {
   for (const ChunkKey& key : area) ledger.came(air(key), 11);
   ledger.came(air(area[0]), 11);

@@ -39,7 +39,9 @@ std::vector<Message> one_of_each() {
           Pong{77},
           Bye{ByeReason::kDraining, "see you"},
           StripHead{{{2, -3, 4, -5}, ChunkFace::kPy}, 6, 7},
-          StripHead{{{2, -3, 4, -5}, ChunkFace::kPx}, 0, 0}};
+          StripHead{{{2, -3, 4, -5}, ChunkFace::kPx}, 0, 0},
+          Failed{{2, -3, 4, -5}},
+          Failed{{2, -3, 4, -5}, ChunkFace::kPx}};
 }
 
 /// A whole message: the head, and behind a chunk as many payload bytes as it declares.
@@ -78,6 +80,17 @@ TEST(Message, NamesStripsByFacesThatAChunkHas) {
   const std::vector<std::byte> head = encode(StripHead{{{3, -1, 2, -3}, static_cast<ChunkFace>(6)}, 0, 0});
   EXPECT_EQ(decode(head).error(), MessageError::kBadKey);
   EXPECT_EQ(decode(encode(Want{{}, {{{3, -1, 2, -3}, static_cast<ChunkFace>(6)}}})).error(), MessageError::kBadKey);
+}
+
+TEST(Message, NamesWhatCannotBeMadeByChunkOrByFace) {
+  const auto chunk = decode(encode(Failed{{3, -1, 2, -3}}));
+  EXPECT_EQ(std::get<Failed>(chunk->message).key, (ChunkKey{3, -1, 2, -3}));
+  EXPECT_FALSE(std::get<Failed>(chunk->message).face);
+  const auto strip = decode(encode(Failed{{3, -1, 2, -3}, ChunkFace::kNz}));
+  EXPECT_EQ(std::get<Failed>(strip->message).face, ChunkFace::kNz);
+  EXPECT_EQ(decode(encode(Failed{{3, -1, 2, -3}, static_cast<ChunkFace>(6)})).error(), MessageError::kBadKey);
+  EXPECT_EQ(decode(encode(Failed{{3, -1, 2, -3}, static_cast<ChunkFace>(0xFE)})).error(), MessageError::kBadKey);
+  EXPECT_EQ(decode(encode(Failed{{kLodMax + 1, 0, 0, 0}})).error(), MessageError::kBadKey);
 }
 
 TEST(Message, GivesAViewAsItCame) {

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <condition_variable>
 #include <future>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace talus::server {
 namespace {
@@ -185,6 +190,82 @@ TEST(JobPool, DropsWhatIsQueuedWhenItStops) {
   held.pool.stop();
   EXPECT_EQ(owned.use_count(), 1);
   EXPECT_EQ(held.pool.push(terms(Lane::kView, 0.0), [](const JobPool::Context&) {}).job, nullptr);
+}
+
+/// Hangs every job that asks it to, until it is let go.
+struct Trap {
+  void hang() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return is_open; });
+  }
+  void open() {
+    const std::lock_guard lock(mutex);
+    is_open = true;
+    changed.notify_all();
+  }
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool is_open = false;
+};
+
+TEST(JobPool, GivesUpAJobThatHangsAndServesOnWithANewThread) {
+  Trap trap;
+  JobPool pool({.threads = 1, .job_s = 0.2, .spares = 1});
+  std::promise<void> told;
+  std::atomic<bool> was_cancelled = false;
+  pool.push(
+      terms(Lane::kView, 0.0),
+      [&](const JobPool::Context& context) {
+        trap.hang();
+        was_cancelled = context.token.is_cancelled();
+      },
+      [&] { told.set_value(); });
+  told.get_future().wait();
+  EXPECT_EQ(pool.hung(), 1U);
+  EXPECT_EQ(pool.hanging(), 1U);
+  finish(pool);
+  EXPECT_EQ(pool.threads(), 1U);
+  trap.open();
+  while (pool.hanging() != 0) std::this_thread::yield();
+  EXPECT_TRUE(was_cancelled);
+}
+
+TEST(JobPool, HasOnlySoManyThreadsForHungJobsUntilTheyComeBack) {
+  Trap trap;
+  JobPool pool({.threads = 1, .job_s = 0.1, .spares = 1});
+  std::promise<void> told;
+  std::atomic<int> hung = 0;
+  for (int i = 0; i < 2; ++i) {
+    pool.push(
+        terms(Lane::kView, i),
+        [&](const JobPool::Context& context) {
+          EXPECT_LT(context.thread, pool.thread_indices());
+          trap.hang();
+        },
+        [&] {
+          if (++hung == 2) told.set_value();
+        });
+  }
+  told.get_future().wait();
+  EXPECT_EQ(pool.threads(), 0U) << "the second has cost its thread";
+  std::promise<void> done;
+  pool.push(terms(Lane::kView, 9.0), [&](const JobPool::Context&) { done.set_value(); });
+  trap.open();
+  while (pool.hanging() != 0) std::this_thread::yield();
+  done.get_future().wait();
+  EXPECT_EQ(pool.threads(), 1U) << "who comes back makes room for a new one";
+}
+
+TEST(JobPool, StopsThoughAJobHangs) {
+  Trap trap;
+  auto pool = std::make_unique<JobPool>(JobPoolOptions{.threads = 2, .job_s = 0.1});
+  std::promise<void> started;
+  pool->push(terms(Lane::kView, 0.0), [&](const JobPool::Context&) { started.set_value(), trap.hang(); });
+  started.get_future().wait();
+  pool->stop();
+  EXPECT_EQ(pool->hanging(), 1U);
+  trap.open();
+  while (pool->hanging() != 0) std::this_thread::yield();
 }
 
 }  // namespace

@@ -52,6 +52,33 @@ class HeldBuilder final : public ChunkBuilder {
   bool is_open_ = false;
 };
 
+PayloadName name_of(std::int32_t x, std::int32_t lod = 0) {
+  PayloadName name;
+  name.key = {lod, x, 0, 0};
+  return name;
+}
+const PayloadName kStubborn = name_of(5);
+
+/// Does not come back from one chunk until it is opened, whatever its token says.
+class StubbornBuilder final : public ChunkBuilder {
+ public:
+  std::optional<ChunkPayload> build(const PayloadName& name, std::size_t, const CancelToken&) override {
+    std::unique_lock lock(mutex_);
+    if (name == kStubborn) changed_.wait(lock, [&] { return is_open_; });
+    return ChunkPayload{ChunkKind::kMesh, std::vector<std::byte>(10)};
+  }
+  void open() {
+    const std::lock_guard lock(mutex_);
+    is_open_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_open_ = false;
+};
+
 struct Bench {
   explicit Bench(std::size_t queued = 256) : pool({1, queued}) {}
   ~Bench() {
@@ -67,12 +94,6 @@ struct Bench {
   HeldBuilder builder;
   ChunkService service{cache, stored, pool, builder, clock, metrics};
 };
-
-PayloadName name_of(std::int32_t x, std::int32_t lod = 0) {
-  PayloadName name;
-  name.key = {lod, x, 0, 0};
-  return name;
-}
 
 constexpr Asker kHttp{1, Lane::kView, 0.0};
 constexpr Asker kStream{2, Lane::kView, 0.0};
@@ -203,6 +224,46 @@ TEST(ChunkService, IsAsUrgentAsItsMostUrgentAsker) {
   bench.builder.open();
   both.get_future().wait();
   EXPECT_EQ(order, (std::vector<int>{1, 1, 2}));
+}
+
+/// A bench whose pool gives up what does not end.
+struct ImpatientBench {
+  ~ImpatientBench() {
+    builder.open();
+    while (pool.hanging() != 0) std::this_thread::yield();
+  }
+  SystemClock clock;
+  Metrics metrics;
+  MemoryCache cache{1 << 20};
+  Worlds worlds;
+  StoredChunks stored{worlds};
+  StubbornBuilder builder;
+  JobPool pool{{.threads = 1, .job_s = 0.2, .spares = 2}};
+  ChunkService service{cache, stored, pool, builder, clock, metrics};
+};
+
+TEST(ChunkService, AnswersFailedForAChunkThatHangsAndServesTheOthers) {
+  set_log_level(LogLevel::kOff);
+  ImpatientBench bench;
+  std::promise<ChunkResult> hung;
+  const auto ticket = bench.service.request(kStubborn, kHttp, [&](ChunkResult r) { hung.set_value(std::move(r)); });
+  ASSERT_TRUE(std::holds_alternative<ChunkService::Ticket>(ticket));
+  EXPECT_EQ(hung.get_future().get().error(), ChunkError::kFailed);
+  EXPECT_EQ(bench.metrics.value(Count::kChunkHung), 1U);
+
+  const auto again = bench.service.request(kStubborn, kStream, [](const ChunkResult&) { ADD_FAILURE(); });
+  ASSERT_TRUE(std::holds_alternative<ChunkError>(again)) << "another thread is not risked";
+  EXPECT_EQ(std::get<ChunkError>(again), ChunkError::kFailed);
+
+  std::promise<ChunkResult> made;
+  const auto waits = bench.service.request(name_of(7), kHttp, [&](ChunkResult r) { made.set_value(std::move(r)); });
+  EXPECT_TRUE(made.get_future().get().has_value());
+
+  // It ends after all: what it has made is good, and it may be asked for again.
+  bench.builder.open();
+  while (bench.pool.hanging() != 0) std::this_thread::yield();
+  EXPECT_TRUE(std::holds_alternative<PayloadRef>(bench.service.request(kStubborn, kHttp, [](const ChunkResult&) {})));
+  set_log_level(LogLevel::kInfo);
 }
 
 }  // namespace

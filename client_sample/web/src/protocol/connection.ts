@@ -1,7 +1,7 @@
 // One session with a server, for as long as the page lives: hello, views, credit, pings, and after a loss the same
 // again with what is already held, so that nothing is sent twice. Owner: the main thread.
 
-import type { StripKey } from './chunk_face';
+import type { ChunkFace, StripKey } from './chunk_face';
 import type { ChunkKey, Vec3 } from './chunk_key';
 import type { AcceptedView } from './interest_area';
 import { pageToken } from './join_token';
@@ -72,6 +72,8 @@ export interface ConnectionEvents {
   accepted(sequence: number, view: AcceptedView): void;
   arrival(arrival: Arrival): void;
   strip(arrival: StripArrival): void;
+  /// The server cannot make this chunk (face null) or this strip of it: it will not come.
+  failed(key: ChunkKey, face: ChunkFace | null): void;
   leave(keys: ChunkKey[]): void;
   idle(viewSequence: number): void;
   /// What survives a lost connection; asked for after every welcome.
@@ -204,6 +206,8 @@ export class Connection {
         return this.events.arrival({ ...message, bytes });
       case 'strip':
         return this.events.strip({ ...message, bytes });
+      case 'failed':
+        return this.events.failed(message.key, message.face);
       case 'leave':
         return this.events.leave(message.keys);
       case 'idle':

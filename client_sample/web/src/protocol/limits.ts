@@ -2,7 +2,7 @@
 
 /// Without the strips of version 2 there would be light between LODs.
 export const kVersionLow = 2;
-export const kVersionHigh = 2;
+export const kVersionHigh = 3;
 
 /// Largest message a server sends, in bytes; anything longer is a broken peer.
 export const kServerMessageBytesMax = 1024 * 1024;

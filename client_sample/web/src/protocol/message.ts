@@ -12,6 +12,7 @@ import { Chunk } from './generated/talus/wire/chunk';
 import { ChunkKind } from './generated/talus/wire/chunk-kind';
 import { Credit } from './generated/talus/wire/credit';
 import { Envelope } from './generated/talus/wire/envelope';
+import { Failed } from './generated/talus/wire/failed';
 import { Held } from './generated/talus/wire/held';
 import { HeldKey } from './generated/talus/wire/held-key';
 import { Hello } from './generated/talus/wire/hello';
@@ -65,6 +66,7 @@ export type ServerMessage =
   | { type: 'viewAccepted'; sequence: number; view: AcceptedView; chunks: number }
   | { type: 'chunk'; key: ChunkKey; revision: bigint; kind: ChunkKind; faces: number; payload: Uint8Array }
   | { type: 'strip'; strip: StripKey; revision: bigint; payload: Uint8Array }
+  | { type: 'failed'; key: ChunkKey; face: ChunkFace | null } // null: the chunk itself
   | { type: 'leave'; keys: ChunkKey[] }
   | { type: 'idle'; viewSequence: number; chunksSent: bigint }
   | { type: 'ping'; nonce: bigint }
@@ -198,6 +200,12 @@ function decodeStrip(table: Strip, payload: Uint8Array): ServerMessage {
   return { type: 'strip', strip: { key: plainKey(table.key()), face: face as ChunkFace }, revision: table.revision(), payload };
 }
 
+function decodeFailed(table: Failed): ServerMessage {
+  const face = table.face();
+  if (face < -1 || face > 5) throw new MessageError('a face that no chunk has');
+  return { type: 'failed', key: plainKey(table.key()), face: face < 0 ? null : (face as ChunkFace) };
+}
+
 function decodeRefused(table: Refused): ServerMessage {
   const versions = [...(table.versionsArray() ?? [])];
   return { type: 'refused', reason: table.reason(), message: table.message() ?? '', versions };
@@ -227,6 +235,8 @@ function decodeBody(envelope: Envelope, payload: Uint8Array): ServerMessage {
       return decodeChunk(body(new Chunk()), payload);
     case Message.Strip:
       return decodeStrip(body(new Strip()), payload);
+    case Message.Failed:
+      return decodeFailed(body(new Failed()));
     case Message.Leave: {
       const leave = body(new Leave());
       const keys = Array.from({ length: leave.keysLength() }, (_, i) => plainKey(leave.keys(i)));

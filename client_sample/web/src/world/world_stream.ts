@@ -1,8 +1,8 @@
 // The world as it comes: asks for views, decodes what arrives, keeps what is held and says when a view is complete.
 // Owner: the main thread.
 
-import type { StripKey } from '../protocol/chunk_face';
-import { type ChunkKey, type Vec3, type WorldShape, edgeOf } from '../protocol/chunk_key';
+import type { ChunkFace, StripKey } from '../protocol/chunk_face';
+import { type ChunkKey, type Vec3, type WorldShape, edgeOf, nameOfKey } from '../protocol/chunk_key';
 import { Connection, type Arrival, type ConnectionState, type StripArrival, type ViewRequest } from '../protocol/connection';
 import { interestArea } from '../protocol/interest_area';
 import { kViewLodMax } from '../protocol/limits';
@@ -58,6 +58,7 @@ export class WorldStream<Mesh extends PlacedSurface> {
       accepted: (sequence, view) => this.accepted(sequence, view),
       arrival: (arrival) => this.arrival(arrival),
       strip: (arrival) => this.stripArrival(arrival),
+      failed: (key, face) => this.failed(key, face),
       leave: (keys) => this.store.leave(keys),
       idle: (sequence) => {
         this.idleFor = sequence;
@@ -201,6 +202,13 @@ export class WorldStream<Mesh extends PlacedSurface> {
       if (packed === null) this.fault(`a strip cannot be decoded: ${why}`);
       this.store.stripReady(strip, packed && this.events.createStrip(strip, this.shape, packed));
     });
+  }
+
+  /// A chunk that does not come leaves its place as it is drawn; a strip that does not come holds nothing up.
+  private failed(key: ChunkKey, face: ChunkFace | null): void {
+    this.fault(`the server cannot make ${face === null ? 'chunk' : 'a strip of'} ${nameOfKey(key)}`);
+    if (face === null || this.store.stripArrived({ key, face }) === null) return;
+    this.store.stripReady({ key, face }, null);
   }
 
   private fault(why: string): void {

@@ -2,6 +2,7 @@ import { Builder, ByteBuffer } from 'flatbuffers';
 import { describe, expect, test } from 'vitest';
 import { Chunk } from '../../src/protocol/generated/talus/wire/chunk';
 import { Envelope } from '../../src/protocol/generated/talus/wire/envelope';
+import { Failed } from '../../src/protocol/generated/talus/wire/failed';
 import { Held } from '../../src/protocol/generated/talus/wire/held';
 import { Hello } from '../../src/protocol/generated/talus/wire/hello';
 import { Key } from '../../src/protocol/generated/talus/wire/key';
@@ -30,6 +31,19 @@ function chunkMessage(lod: number, x: number, kind: ChunkKind, claimed: number, 
   new DataView(bytes.buffer).setUint32(0, head.length, true);
   bytes.set(head, 4);
   bytes.set(payload, 4 + head.length);
+  return bytes;
+}
+
+function failedMessage(face: number): Uint8Array {
+  const builder = new Builder(128);
+  Failed.startFailed(builder);
+  Failed.addKey(builder, Key.createKey(builder, 1, 2, -3, 4));
+  Failed.addFace(builder, face);
+  Envelope.finishEnvelopeBuffer(builder, Envelope.createEnvelope(builder, Message.Failed, Failed.endFailed(builder)));
+  const head = builder.asUint8Array();
+  const bytes = new Uint8Array(4 + head.length);
+  new DataView(bytes.buffer).setUint32(0, head.length, true);
+  bytes.set(head, 4);
   return bytes;
 }
 
@@ -94,6 +108,14 @@ describe('what the server says', () => {
     const shown = new Uint8Array([0xaa, 0xbb, 0xcc]);
     expect(decode(specBytes('chunk'))).toEqual({ type: 'chunk', key, revision: 6n, kind: ChunkKind.Mesh, faces: 0, payload: shown });
     expect(decode(specBytes('strip'))).toEqual({ type: 'strip', strip: { key, face: 3 }, revision: 6n, payload: shown });
+  });
+
+  test('what cannot be made is named, as a chunk or as one of its strips', () => {
+    const key = { lod: 1, x: 2, y: -3, z: 4 };
+    expect(decode(failedMessage(-1))).toEqual({ type: 'failed', key, face: null });
+    expect(decode(failedMessage(4))).toEqual({ type: 'failed', key, face: 4 });
+    expect(() => decode(failedMessage(6))).toThrow(MessageError);
+    expect(() => decode(failedMessage(-2))).toThrow(MessageError);
   });
 
   test('a ping is read back', () => expect(decode(encodePing(77n))).toEqual({ type: 'ping', nonce: 77n }));

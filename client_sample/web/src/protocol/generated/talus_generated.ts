@@ -6,6 +6,7 @@ export { Chunk } from './talus/wire/chunk';
 export { ChunkKind } from './talus/wire/chunk-kind';
 export { Credit } from './talus/wire/credit';
 export { Envelope } from './talus/wire/envelope';
+export { Failed } from './talus/wire/failed';
 export { Held } from './talus/wire/held';
 export { HeldKey } from './talus/wire/held-key';
 export { Hello } from './talus/wire/hello';

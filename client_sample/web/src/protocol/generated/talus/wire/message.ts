@@ -3,6 +3,7 @@
 import { Bye } from '../../talus/wire/bye';
 import { Chunk } from '../../talus/wire/chunk';
 import { Credit } from '../../talus/wire/credit';
+import { Failed } from '../../talus/wire/failed';
 import { Held } from '../../talus/wire/held';
 import { Hello } from '../../talus/wire/hello';
 import { Idle } from '../../talus/wire/idle';
@@ -33,13 +34,14 @@ export enum Message {
   Ping = 12,
   Pong = 13,
   Bye = 14,
-  Strip = 15
+  Strip = 15,
+  Failed = 16
 }
 
 export function unionToMessage(
   type: Message,
-  accessor: (obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null
-): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
+  accessor: (obj:Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null
+): Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
   switch(Message[type]) {
     case 'NONE': return null; 
     case 'Hello': return accessor(new Hello())! as Hello;
@@ -57,15 +59,16 @@ export function unionToMessage(
     case 'Pong': return accessor(new Pong())! as Pong;
     case 'Bye': return accessor(new Bye())! as Bye;
     case 'Strip': return accessor(new Strip())! as Strip;
+    case 'Failed': return accessor(new Failed())! as Failed;
     default: return null;
   }
 }
 
 export function unionListToMessage(
   type: Message, 
-  accessor: (index: number, obj:Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null, 
+  accessor: (index: number, obj:Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome) => Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null, 
   index: number
-): Bye|Chunk|Credit|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
+): Bye|Chunk|Credit|Failed|Held|Hello|Idle|Leave|Ping|Pong|Refused|Strip|View|ViewAccepted|Want|Welcome|null {
   switch(Message[type]) {
     case 'NONE': return null; 
     case 'Hello': return accessor(index, new Hello())! as Hello;
@@ -83,6 +86,7 @@ export function unionListToMessage(
     case 'Pong': return accessor(index, new Pong())! as Pong;
     case 'Bye': return accessor(index, new Bye())! as Bye;
     case 'Strip': return accessor(index, new Strip())! as Strip;
+    case 'Failed': return accessor(index, new Failed())! as Failed;
     default: return null;
   }
 }
