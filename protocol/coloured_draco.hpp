@@ -26,9 +26,9 @@ struct ColouredDraco {
   glm::u16vec3 high{};  ///< inclusive
 };
 
-/// As encode_draco, with COLOR (uint16 x 3) from `palette` by material; a material beyond the palette has its first
-/// colour. Requires a palette.
+/// As encode_draco at kDracoSpeed, with COLOR (uint16 x 3) from `palette` by material; a material beyond the palette
+/// has its first colour. Requires a palette.
 std::expected<ColouredDraco, CodecError> encode_coloured_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
-                                                               std::span<const glm::u16vec3> palette, int speed);
+                                                               std::span<const glm::u16vec3> palette);
 
 }  // namespace talus::protocol

@@ -232,8 +232,8 @@ std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& 
 }
 
 std::expected<ColouredDraco, CodecError> encode_coloured_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
-                                                               std::span<const glm::u16vec3> palette, int speed) {
-  check_encodable(mesh, lattice, speed);
+                                                               std::span<const glm::u16vec3> palette) {
+  check_encodable(mesh, lattice, kDracoSpeed);
   TALUS_CHECK(!palette.empty());
   if (mesh.indices.empty()) return std::unexpected(CodecError::kEmpty);
   draco::Mesh staged;
@@ -244,7 +244,7 @@ std::expected<ColouredDraco, CodecError> encode_coloured_draco(const ChunkMesh& 
     const glm::u16vec3& colour = palette[mesh.materials[i] < palette.size() ? mesh.materials[i] : 0];
     std::memcpy(colours + i * sizeof colour, &colour, sizeof colour);
   }
-  auto bytes = compress(staged, lattice, speed);
+  auto bytes = compress(staged, lattice, kDracoSpeed);
   if (!bytes) return std::unexpected(bytes.error());
 
   // Edgebreaker splits vertices that are not manifold and drops flat triangles: only a decoder knows what is left.

@@ -20,7 +20,6 @@ constexpr int kUnsignedShort = 5123;
 constexpr int kUnsignedInt = 5125;
 constexpr int kFloat = 5126;
 constexpr int kTriangles = 4;
-constexpr int kSpeed = 7;
 
 /// glTF colours of vertices are linear; our palette is sRGB. IEC 61966-2-1.
 std::uint16_t linear_of(std::uint32_t srgb) {
@@ -169,7 +168,7 @@ std::expected<std::vector<std::byte>, CodecError> encode_glb(std::span<const Glb
     const glm::dvec3& at = part.translation_m;
     TALUS_CHECK(std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z));
     if (part.mesh.indices.empty()) continue;
-    const auto payload = encode_coloured_draco(part.mesh, part.lattice, kPalette, kSpeed);
+    const auto payload = encode_coloured_draco(part.mesh, part.lattice, kPalette);
     if (!payload) return std::unexpected(payload.error());
     asset.add(*payload, part);
   }

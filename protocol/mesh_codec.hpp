@@ -25,12 +25,15 @@ MeshLattice mesh_lattice(const ChunkKey& key, int cells, double voxel_m);
 /// Of the seam strips of `key`: that of the next finer LOD, from the lowest corner of `key`. Requires key.lod > 0.
 MeshLattice strip_lattice(const ChunkKey& key, int cells, double voxel_m);
 
+/// Draco's own speed, 0..10, of every payload: 8 and above predict by differences, which on a lattice is smaller *and*
+/// quicker than the parallelograms of 5..7.
+inline constexpr int kDracoSpeed = 10;
+
 /// A Draco mesh: POSITION (float32 x 3, chunk-local metres, explicit quantisation), NORMAL (float32 x 3, octahedral
 /// kNormalBits), GENERIC unique id 2 (material, uint8) and GENERIC unique id 3 (ridge, uint8). Deterministic. kEmpty
-/// without triangles. `speed` 0..10 is Draco's own. 8 and above predict by differences, which on a lattice is smaller
-/// *and* quicker than the parallelograms of 5..7.
+/// without triangles. Other speeds are for comparing.
 std::expected<std::vector<std::byte>, CodecError> encode_draco(const ChunkMesh& mesh, const MeshLattice& lattice,
-                                                               int speed = 10);
+                                                               int speed = kDracoSpeed);
 
 /// Inverse of encode_draco up to the order of vertices and triangles; positions come back exactly, normals octahedrally
 /// rounded. Safe on any bytes; at most `kOutboundMessageBytesMax` of them.

@@ -38,10 +38,11 @@ std::size_t append(std::vector<std::byte>& out, std::size_t bytes_max, Encode en
   return written;
 }
 
-/// The version of the index codec is a setting of the whole process: 1 has fewer bytes than 0.
-void choose_index_version() {
-  static const bool kIsChosen = (meshopt_encodeIndexVersion(1), true);
-  (void)kIsChosen;
+/// Versions of the codecs are settings of the whole process, and their defaults change with the library's release; the
+/// bytes of a payload must not. Index codec 1 has fewer bytes than 0; vertex codec 0 is what every decoder reads.
+void choose_versions() {
+  static const bool kAreChosen = (meshopt_encodeIndexVersion(1), meshopt_encodeVertexVersion(0), true);
+  (void)kAreChosen;
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ std::expected<std::vector<std::byte>, CodecError> encode_meshopt(const ChunkMesh
   const std::size_t points = mesh.positions.size();
   TALUS_CHECK(mesh.normals.size() == points && mesh.materials.size() == points && mesh.ridges.size() == points);
   if (mesh.indices.empty()) return std::unexpected(CodecError::kEmpty);
-  choose_index_version();
+  choose_versions();
 
   std::vector<unsigned> indices(mesh.indices.size());
   meshopt_optimizeVertexCacheFifo(indices.data(), mesh.indices.data(), indices.size(), points, kCacheVertices);

@@ -180,19 +180,24 @@ Viewer::States Viewer::strips_of_target() {
   return out;
 }
 
-/// After the chunks are those of the new target. A held strip goes with its chunk, any other with the need for it.
-void Viewer::merge_strips(Change& change) {
+/// After the chunks are those of the new target. A held strip goes with its chunk, any other with the need for it. One
+/// that was sent by name while its chunk was not of the target went when the client let that chunk go, which it does
+/// without a word: with the chunk it is wanted again.
+void Viewer::merge_strips(States& before, Change& change) {
   States next = strips_of_target();
   States kept;
   auto at = next.begin();
   for (const State& old : strips_) {
+    const Piece chunk{old.piece.key, {}};
+    const bool is_of_target = find(chunk) != nullptr;
+    const bool is_lost = old.phase == Phase::kHeld && is_of_target && find_in(before, chunk) == nullptr;
     while (at != next.end() && at->piece < old.piece) ++at;
     if (at != next.end() && at->piece == old.piece) {
-      at->phase = old.phase;
+      at->phase = is_lost ? Phase::kWanted : old.phase;
       if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, at->urgency});
     } else if (old.phase == Phase::kInFlight) {
       change.cancelled.push_back(old.piece);
-    } else if (old.phase == Phase::kHeld && find({old.piece.key, {}}) != nullptr) {
+    } else if (old.phase == Phase::kHeld && is_of_target && !is_lost) {
       kept.push_back(old);
     }
   }
@@ -209,8 +214,8 @@ Viewer::Change Viewer::refresh() {
     const auto chunks = static_cast<std::uint32_t>(next.size());
     change.accepted = protocol::ViewAccepted{view_->sequence, view_->view, chunks};
   }
-  chunks_ = std::move(next);
-  if (takes_strips_) merge_strips(change);
+  std::swap(chunks_, next);
+  if (takes_strips_) merge_strips(next, change);
   in_flight_ -= change.cancelled.size();
   queue_.clear();
   for (const States* states : {&chunks_, &strips_}) {

@@ -101,7 +101,7 @@ class Viewer {
   template <class Visit>
   void for_each_strip_of(const State& finer, Visit visit);
   States strips_of_target();
-  void merge_strips(Change& change);
+  void merge_strips(States& before, Change& change);
   void want_strips_of(const State& finer);
 
   const protocol::WorldShape shape_;

@@ -12,8 +12,8 @@ namespace {
 
 /// Raised when the bytes of a format change for one and the same mesh.
 /// By format; a map's is raised when maps look different.
-constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc2",  "glb2",  "density1", "height1",  "map1",
-                                                                  "seam2", "tile3", "mesh1",    "meshseam1"};
+constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc2",  "glb3",  "density1", "height1",  "map1",
+                                                                  "seam2", "tile4", "mesh1",    "meshseam1"};
 constexpr std::string_view kManifestEdition = "man1";
 constexpr std::string_view kTilesetEdition = "tileset2";
 /// Edits are not kept yet: every chunk is as its world made it.

@@ -44,8 +44,8 @@ function unpacked(payload) {
 
 const decoders = {
   draco: (payload) => packMesh(decodeDraco(draco, payload), kStepM),
-  mesh: (payload) => decodeMesh(MeshoptDecoder, payload),
-  'mesh+zstd': (payload) => decodeMesh(MeshoptDecoder, unpacked(payload)),
+  mesh: (payload) => decodeMesh(MeshoptDecoder, payload, kStepM),
+  'mesh+zstd': (payload) => decodeMesh(MeshoptDecoder, unpacked(payload), kStepM),
 };
 
 const folder = process.argv[2];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -95,6 +96,14 @@ TEST(MeshoptCodec, LeavesOutVerticesThatNoTriangleHas) {
   ASSERT_TRUE(decoded);
   EXPECT_EQ(decoded->positions.size(), 3U);
   EXPECT_EQ(faces_of(*decoded), faces_of(mesh));
+}
+
+TEST(MeshoptCodec, WritesTheVersionsOfItsStreamsThatTheSpecificationNames) {
+  const auto bytes = *encode_meshopt(sample_surface(16, 5), kSmall);
+  std::uint32_t index_bytes = 0;
+  std::memcpy(&index_bytes, bytes.data() + 20, sizeof index_bytes);
+  EXPECT_EQ(bytes[24], std::byte{0xE1}) << "indices by version 1";
+  EXPECT_EQ(bytes[24 + index_bytes], std::byte{0xA0}) << "vertices by version 0";
 }
 
 TEST(MeshoptCodec, RefusesToEncodeNothing) {

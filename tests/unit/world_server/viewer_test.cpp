@@ -256,6 +256,39 @@ TEST(Viewer, SendsStripsThatAreWantedByNameForChunksNobodyWants) {
   EXPECT_TRUE(deliver_all_reaching(viewer, 0).empty()) << "once";
 }
 
+TEST(Viewer, SendsAStripAgainWhenTheChunkItWasWantedByNameForBecomesWanted) {
+  // The client drew the coarse chunk a while longer, got the strip it lacked, and let go of both; it says so only when
+  // its view asks for the chunk anew already.
+  Viewer viewer(kShape, kPlenty, true);
+  const std::vector<StripKey> name{{kCoarse, ChunkFace::kPx}};
+  viewer.on_message(want_of(kFiner));
+  viewer.refresh();
+  deliver_all_reaching(viewer, 0x3F);
+  viewer.on_message(want_of(kFiner, name));
+  viewer.refresh();
+  EXPECT_EQ(deliver_all_reaching(viewer, 0), std::vector<Piece>{kStrip});
+  std::vector<ChunkKey> both(kFiner.begin(), kFiner.end());
+  both.push_back(kCoarse);
+  viewer.on_message(want_of(both, name));
+  viewer.refresh();
+  EXPECT_EQ(deliver_all_reaching(viewer, 0), (std::vector<Piece>{kStrip, {kCoarse, {}}}));
+  viewer.on_message(want_of(both));
+  viewer.refresh();
+  EXPECT_TRUE(deliver_all_reaching(viewer, 0).empty()) << "held with its chunk";
+  EXPECT_TRUE(viewer.take_idle());
+
+  // The same, but nothing needs the strip at the moment when the chunk comes back.
+  viewer.on_message(want_of(kFiner, name));
+  viewer.refresh();
+  EXPECT_TRUE(deliver_all_reaching(viewer, 0).empty());
+  viewer.on_message(want_of(std::array{kCoarse}));
+  viewer.refresh();
+  EXPECT_EQ(deliver_all_reaching(viewer, 0), (std::vector<Piece>{{kCoarse, {}}}));
+  viewer.on_message(want_of(both));
+  viewer.refresh();
+  EXPECT_EQ(std::ranges::count(deliver_all_reaching(viewer, 0x3F), kStrip), 1);
+}
+
 TEST(Viewer, DoesNotSendStripsThatAreHeldOrThatTheClientCannotTake) {
   Viewer resuming(kShape, kPlenty, true);
   resuming.on_message(Held{{{kCoarse, 0}, {kFiner[0], 0}}, {0, 0x3F}, {{kCoarse, ChunkFace::kPx}}});

@@ -83,6 +83,8 @@ export interface ConnectionEvents {
 export class Connection {
   bytesReceived = 0;
   roundTrip_ms = 0;
+  /// That payloads come in, as the server said; empty before it did.
+  format = '';
   /// Sequence of the last view that was sent; 0 before the first.
   viewSequence = 0;
   private socket: WebSocket | null = null;
@@ -225,6 +227,7 @@ export class Connection {
   private welcomeArrived(message: Extract<ServerMessage, { type: 'welcome' }>): void {
     this.attempt = 0;
     this.welcomed = true;
+    this.format = message.format;
     this.events.welcome(message.worldHash, JSON.parse(message.manifestJson));
     const { chunks, strips } = this.events.held();
     for (let i = 0; i < chunks.length; i += kKeysPerMessageMax) {

@@ -27,6 +27,8 @@ interface ShadowMap {
 export class ShadowMaps {
   readonly uniforms: Record<string, THREE.IUniform>;
   drawCalls = 0;
+  /// False: the sun reaches everywhere. For processors that draw without a GPU, which spend most of a frame here.
+  isOn = true;
   private readonly maps: ShadowMap[];
   private readonly material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
@@ -54,6 +56,7 @@ export class ShadowMaps {
   /// Draws at most one map. `x, y, z`: the camera, world metres; chunks are placed relative to it.
   update(terrain: TerrainLayer, x: number, y: number, z: number, now_ms: number): void {
     this.drawCalls = 0;
+    if (!this.isOn) return;
     let worst: ShadowMap | null = null;
     for (const map of this.maps) {
       if (map.centre === null || this.isStale(map, terrain, x, y, z, now_ms)) {

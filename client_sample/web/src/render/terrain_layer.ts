@@ -166,6 +166,13 @@ export class TerrainLayer {
     chunk.object.material = this.seams && chunk.isStrip ? this.seamMaterial : this.material;
   }
 
+  /// Chunks and strips in the scene that are there to stay.
+  get shown(): number {
+    let count = 0;
+    for (const chunk of this.placed) if (!this.fades.isLeaving(chunk) && chunk.object.parent === this.scene) count += 1;
+    return count;
+  }
+
   get triangles(): number {
     let sum = 0;
     for (const chunk of this.placed) if (!this.fades.isLeaving(chunk)) sum += chunk.indices.length / 3;

@@ -67,6 +67,11 @@ export class ViewRenderer {
     this.seaScene.add(fullScreenMesh(sea));
   }
 
+  /// Before the first frame.
+  setShadows(on: boolean): void {
+    this.shadows.isOn = on;
+  }
+
   setFar(far: number): void {
     this.shared.uFar.value = far;
   }

@@ -11,6 +11,7 @@ export interface Place {
   formats: string[]; // that chunks may come in, by preference
   sunAzimuth: number; // degrees clockwise from north
   sunHeight: number;
+  shadows: boolean;
   samples: number; // of multisampling
   pixelRatio: number | null; // null: the screen's own, lowered when frames take long
 }
@@ -42,6 +43,7 @@ export function placeFromQuery(text: string): Place {
     formats: query.get('format') === 'mesh' ? ['mesh', 'drc'] : ['drc'],
     sunAzimuth: number(query, 'azimuth', 118, -360, 360),
     sunHeight: number(query, 'sun', 30, 6, 85),
+    shadows: query.get('shadows') !== '0',
     samples: Math.round(number(query, 'samples', 4, 0, 8)),
     pixelRatio: query.has('ratio') ? number(query, 'ratio', 1, 0.25, 3) : null,
   };

@@ -12,6 +12,8 @@ export interface TestDoor {
   /// What is drawn at a point of the screen, both 0..1 from the lower left; null for sky and sea.
   pick(right: number, up: number): { distanceM: number; name: string } | null;
   ground(x: number, z: number): number | null;
+  /// Edges on faces of what is drawn at this moment, and the places, in metres, of those that do not close.
+  openEdges(): { edges: number; open: [number, number, number][] };
   /// Whether the map is open, and how many tiles of its view have not come (null: it has not been drawn).
   map(): { open: boolean; missing: number | null };
 }
@@ -24,14 +26,17 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
       connected: viewer.connection.phase === 'open',
       phase: viewer.connection.phase,
       complete: stream.complete,
+      format: stream.connection.format,
       chunks: stream.store.counts(),
       faults: [...viewer.faults],
       bytes: stream.connection.bytesReceived,
       drawCalls: renderer.counts.drawCalls,
       triangles: renderer.counts.triangles,
       terrainTriangles: renderer.terrain.triangles,
+      shown: renderer.terrain.shown,
       frame_ms: viewer.frame_ms,
       at: [body.x, body.y, body.z],
+      areaFrom: stream.areaFrom && [stream.areaFrom.x, stream.areaFrom.y, stream.areaFrom.z],
       walking: body.walking,
     }),
     flyTo: (x, y, z, yawDegrees, pitchDegrees) =>
@@ -43,6 +48,7 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
     overlay: (wire, seams) => renderer.terrain.setOverlay(wire, seams),
     pick: (right, up) => stream.pick(body, renderer.rayThrough(right, up)),
     map: () => ({ open: viewer.map?.isOpen ?? false, missing: Number.isFinite(viewer.map?.missing) ? viewer.map!.missing : null }),
+    openEdges: () => stream.openEdges(),
     ground: (x, z) => viewer.ground(x, z, Infinity)?.heightM ?? null,
   };
 }

@@ -183,6 +183,12 @@ export class ChunkStore<Mesh> {
     return this.drawnNodes;
   }
 
+  /// The meshes of what is drawn: of chunks, then of strips.
+  *shown(): Iterable<Mesh> {
+    for (const node of this.drawnNodes) if (node.held?.mesh) yield node.held.mesh;
+    for (const strip of this.seams.shownStrips()) if (strip.mesh) yield strip.mesh;
+  }
+
   find(key: ChunkKey): ChunkNode<Mesh> | undefined {
     return this.nodes.get(nameOfKey(key));
   }

@@ -26,7 +26,7 @@ function loadDraco(): Promise<DracoModule> {
 async function decode(payload: Uint8Array, stepM: number): Promise<PackedMesh> {
   if (!isMesh(payload)) return packMesh(decodeDraco(await loadDraco(), payload), stepM);
   await MeshoptDecoder.ready;
-  return decodeMesh(MeshoptDecoder, payload);
+  return decodeMesh(MeshoptDecoder, payload, stepM);
 }
 
 async function answer(job: DecodeJob): Promise<DecodeAnswer> {

@@ -12,8 +12,8 @@ export interface MeshoptModule {
 
 const kHeaderBytes = 24;
 const kVertexBytes = 8;
-/// A chunk has at most 62 cells along an edge, a strip twice as many.
-const kCellsMax = 124;
+/// A chunk has at most 32 cells along an edge, a strip twice as many. (And steps of 64 cells fit the GPU's int16.)
+const kCellsMax = 64;
 /// A chunk of 32^3 cells has at most 5 triangles a cell.
 const kTrianglesMax = 5 * 32 ** 3;
 
@@ -26,14 +26,17 @@ export function isMesh(payload: Uint8Array): boolean {
   return payload.length >= 4 && payload[0] === 0x74 && payload[1] === 0x6c && payload[2] === 0x73 && payload[3] === 0x6d;
 }
 
-/// Throws on bytes that are no mesh.
-export function decodeMesh(meshopt: MeshoptModule, payload: Uint8Array): PackedMesh {
+/// Throws on bytes that are no mesh on a lattice whose step is `stepM` metres: drawn at another, it would be of the wrong
+/// size.
+export function decodeMesh(meshopt: MeshoptModule, payload: Uint8Array, stepM: number): PackedMesh {
   requireThat(payload.length >= kHeaderBytes && payload.length <= kServerMessageBytesMax, `${payload.length} bytes`);
   const head = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
   requireThat(isMesh(payload), 'the first bytes are those of something else');
   requireThat(head.getUint8(4) === 1, `version ${head.getUint8(4)}`);
   const cells = head.getUint8(5);
   requireThat(cells >= 1 && cells <= kCellsMax && head.getUint16(6, true) === 0, `${cells} cells`);
+  const said = head.getFloat32(8, true);
+  requireThat(said === stepM, `its step is ${said} m, that of its place ${stepM} m`); // powers of two: exact as floats
   const count = head.getUint32(12, true);
   const triangles = head.getUint32(16, true);
   const indexBytes = head.getUint32(20, true);

@@ -24,6 +24,10 @@ export class Seams<Mesh> {
     return this.shown.size;
   }
 
+  shownStrips(): Iterable<HeldStrip<Mesh>> {
+    return this.shown;
+  }
+
   /// Takes back swaps until what is drawn next has no gap.
   holdBack(drawn: ReadonlySet<ChunkNode<Mesh>>, swaps: readonly Swap<Mesh>[]): void {
     const stray = new Map<string, StripKey>();

@@ -9,6 +9,7 @@ import { kViewLodMax } from '../protocol/limits';
 import { ChunkKind, type HeldChunk } from '../protocol/message';
 import type { WorldManifest } from '../protocol/server_info';
 import { ChunkStore, type DrawTarget } from './chunk_store';
+import { ClosedSurface, type DrawnSurface } from './closed_surface';
 import { DecodePool } from './decode_pool';
 import { type PackedMesh, kStepsPerCell } from './packed_mesh';
 import { type PlacedSurface, type SurfacePoint, surfaceAlong, surfaceBelow } from './surface_index';
@@ -28,10 +29,12 @@ export interface StreamEvents<Mesh> extends DrawTarget<Mesh> {
   fault(why: string): void;
 }
 
-export class WorldStream<Mesh extends PlacedSurface> {
+export class WorldStream<Mesh extends PlacedSurface & DrawnSurface> {
   readonly store: ChunkStore<Mesh>;
   readonly connection: Connection;
   lastLatency_ms = 0;
+  /// Where the interest area that is wanted now was reckoned from; null before the first.
+  areaFrom: Vec3 | null = null;
   faults = 0;
   private readonly pool: DecodePool;
   private readonly shape: WorldShape;
@@ -122,6 +125,14 @@ export class WorldStream<Mesh extends PlacedSurface> {
     return best;
   }
 
+  /// Whether the drawn chunks and strips, as they were given to the GPU, are one closed surface: ClosedSurface.
+  openEdges(): { edges: number; open: [number, number, number][] } {
+    const closed = new ClosedSurface(this.shape.cells);
+    for (const node of this.store.drawn()) closed.addPlace(node.key);
+    for (const mesh of this.store.shown()) closed.addSurface(mesh);
+    return closed.result(this.shape.voxelM);
+  }
+
   /// While places change one after the other, some meet for a moment that no interest area has side by side.
   private askForStray(now_ms: number): void {
     const stray = this.store.strayStrips;
@@ -162,6 +173,7 @@ export class WorldStream<Mesh extends PlacedSurface> {
   private accepted(sequence: number, view: Parameters<typeof interestArea>[0]): void {
     if (sequence > this.connection.viewSequence) return;
     this.store.want(interestArea(view, this.shape), performance.now());
+    this.areaFrom = view.position;
     if (this.newSession) this.store.leaveUnwanted();
     this.newSession = false;
   }

@@ -19,6 +19,11 @@ test('chunks come as Draco unless the query asks for meshes', () => {
   expect(placeFromQuery('?format=mesh').formats).toEqual(['mesh', 'drc']);
 });
 
+test('shadows are drawn unless the query turns them off', () => {
+  expect(placeFromQuery('?far=900').shadows).toBe(true);
+  expect(placeFromQuery('?shadows=0').shadows).toBe(false);
+});
+
 test('values beyond their limits are brought to them', () => {
   expect(placeFromQuery('?far=1e99').farM).toBe(32_768);
   expect(placeFromQuery('?pitch=-1000').pitch).toBe(-89);
