@@ -104,17 +104,22 @@ void measure_stalled(const Served& server, std::size_t count) {
   double user_peak = 0;
   double kernel_peak = 0;
   double during_ms = 0;
+  double filled_s = 0;  // when the kernel last held more for them than before
   while (server.metric(cut) - cut_before < static_cast<double>(count) && seconds_since(start) < 60) {
     const double each = static_cast<double>(count) * kMiB;
     user_peak = std::max(user_peak, static_cast<double>(server.resident_bytes() - resident) / each);
-    kernel_peak = std::max(kernel_peak, static_cast<double>(server.socket_bytes() - held) / each);
+    const double kernel = static_cast<double>(server.socket_bytes() - held) / each;
+    if (kernel > kernel_peak) filled_s = seconds_since(start);
+    kernel_peak = std::max(kernel_peak, kernel);
     during_ms = std::max(during_ms, ordinary_p99_ms(ordinary, target, 1));
   }
   std::printf("%zu stalled readers of a %.0f m view\n", count, kViewM);
   std::printf("  server's memory      %8.3f MiB each at most\n", user_peak);
   std::printf("  kernel, server's end %8.3f MiB each at most\n", kernel_peak);
-  std::printf("  cut                  %8.0f of them within %.1f s\n", server.metric(cut) - cut_before,
-              seconds_since(start));
+  const double cut_s = seconds_since(start);
+  std::printf(
+      "  cut                  %8.0f of them within %.1f s of asking, %.1f s after the last byte was taken for any\n",
+      server.metric(cut) - cut_before, cut_s, cut_s - filled_s);
   std::printf("  an ordinary client   %8.2f ms p99 before, %.2f ms in the worst second\n", before_ms, during_ms);
 }
 
