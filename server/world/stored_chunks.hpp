@@ -5,10 +5,12 @@
 // and other versions of this program, and none is ever given another's bytes. Any thread, but see `load`.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "core/world/manifest.hpp"
 #include "server/cache/payload.hpp"
 #include "server/storage/disk_cache.hpp"
 #include "server/world/world.hpp"
@@ -17,8 +19,10 @@ namespace talus::server {
 
 class StoredChunks {
  public:
-  /// Remembers nothing until `attach`. `worlds` must outlive it.
-  explicit StoredChunks(const Worlds& worlds) : worlds_(worlds) {}
+  /// Remembers nothing until `attach`. `worlds` must outlive it. What another version of the generator has made is as
+  /// if it were not there.
+  explicit StoredChunks(const Worlds& worlds, std::uint32_t generator_version = kGeneratorVersion)
+      : worlds_(worlds), generator_version_(generator_version) {}
 
   /// Before the first load or store.
   void attach(std::unique_ptr<DiskCache> disk) { disk_ = std::move(disk); }
@@ -33,6 +37,7 @@ class StoredChunks {
   std::optional<std::string> disk_name(const PayloadName& name) const;
 
   const Worlds& worlds_;
+  const std::uint32_t generator_version_;
   std::unique_ptr<DiskCache> disk_;
 };
 
