@@ -53,10 +53,10 @@ struct Server::Parts {
         files(std::move(viewer)),
         cache(settings.cache_mib * kMiB),
         stored(worlds),
-        pool({worker_threads(settings), settings.cold_queue, settings.job_s, kSpareThreads}),
+        pool({worker_threads(settings), settings.cold_queue, settings.cold_per_client, settings.job_s, kSpareThreads}),
         builder(worlds, clock, metrics, pool.thread_indices()),
         chunks(cache, stored, pool, builder, clock, metrics),
-        net{worlds, files, clock, chunks, pool, metrics, worlds_json(worlds), PolicySlot(std::move(policy)),
+        net{worlds, files, clock, chunks, pool, metrics, worlds_json(worlds), PolicySlot(std::move(policy)), {},
             {},     {},    {},    {},     {},   {}},
         network(net, network_threads(settings)) {}
 

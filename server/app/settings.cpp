@@ -50,7 +50,8 @@ const std::array kTable{
   SettingInfo{"disk_cache_mib", &of_settings<&S::disk_cache_mib>, 1, 16777216, "N", "Disk for chunks: beyond it the longest unused go."},
   SettingInfo{"log_level", &of_settings<&S::log_level>, 0, 0, "LEVEL", "debug, info, warning, error or off; JSON lines on standard error."},
   SettingInfo{"drain_s", &of_settings<&S::drain_s>, 0, 600, "S", "On SIGTERM, how long answers and sessions may take to end."},
-  SettingInfo{"cold_queue", &of_settings<&S::cold_queue>, 1, 65536, "N", "Chunks that may wait to be made, for each of HTTP and streams; then 503.", true},
+  SettingInfo{"cold_queue", &of_settings<&S::cold_queue>, 1, 65536, "N", "Chunks that may wait to be made, in each lane: feet, view, cover, background; then 503.", true},
+  SettingInfo{"cold_per_client", &of_settings<&S::cold_per_client>, 1, 65536, "N", "Chunks that may wait to be made for one stream, or for one address over HTTP; then 503.", true},
   SettingInfo{"job_s", &of_settings<&S::job_s>, 0.1, 3600, "S", "A chunk or a question whose making takes so long is given up, and its thread replaced; then 503.", true},
   SettingInfo{"connections", &of_limits<&L::connections>, 1, 1000000, "N", "Connections in all.", true},
   SettingInfo{"connections_per_address", &of_limits<&L::connections_per_address>, 1, 1000000, "N", "Connections from one address.", true},
@@ -74,14 +75,15 @@ const std::array kTable{
   SettingInfo{"send_soft_bytes", &of_limits<&L::send_soft_bytes>, 65536, 1073741824, "N", "Queued for one stream beyond this, chunks are taken back.", true},
   SettingInfo{"send_hard_bytes", &of_limits<&L::send_hard_bytes>, 65536, 1073741824, "N", "Queued for one stream beyond this, it is reset.", true},
   SettingInfo{"pongs_queued", &of_limits<&L::pongs_queued>, 1, 1024, "N", "Control messages queued for one stream; beyond this pings go unanswered.", true},
+  SettingInfo{"view_far_m", &of_limits<&L::view_far_m>, 64, 32768, "M", "Furthest that a view may reach; a view that asks for more is clamped to it, and told so.", true},
   SettingInfo{"window_max", &of_limits<&L::window_max>, 2, 256, "N", "Chunks in the making at once for one stream.", true},
 };
 // clang-format on
 
 /// What is built once, at the start.
-constexpr std::array<std::string_view, 13> kFixed{
+constexpr std::array<std::string_view, 14> kFixed{
     "world",      "listen", "tcp_listen", "admin_listen",   "threads",    "net_threads", "cache_mib",
-    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s"};
+    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s",       "cold_per_client"};
 
 bool is_fixed(std::string_view key) {
   return std::find(kFixed.begin(), kFixed.end(), key) != kFixed.end();

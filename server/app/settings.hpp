@@ -36,6 +36,7 @@ struct Settings {
   std::string log_level = "info";
   double drain_s = 10;
   std::size_t cold_queue = 256;
+  std::size_t cold_per_client = 64;
   double job_s = 20;
   NetLimits limits;
 };

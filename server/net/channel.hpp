@@ -24,6 +24,8 @@ class Channel {
   };
   /// Some bytes, or why there are none. A TLS handshake is part of the first read.
   Awaitable<Read> read_some(asio::mutable_buffer into);
+  /// The socket itself, for reads without a coroutine in between; nullptr when TLS lies between.
+  Socket* in_clear() { return tls_ == nullptr ? &socket_ : nullptr; }
   /// As much as is taken at once; `would_block` when nothing is. What follows the returned bytes must come first in the
   /// next call.
   std::size_t write_some(std::span<const asio::const_buffer> buffers, asio::error_code& error);

@@ -35,7 +35,7 @@ ChunkFeed::ChunkFeed(NetContext& net, const NetLimits& limits, FrameWriter& writ
       client_(client),
       executor_(std::move(executor)),
       owner_(std::move(owner)),
-      viewer_(net.worlds[world]->shape(), credit_bytes, version >= protocol::kVersionOfStrips) {
+      viewer_(net.worlds[world]->shape(), credit_bytes, version >= protocol::kVersionOfStrips, limits.view_far_m) {
   net_.sessions.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -66,7 +66,10 @@ void ChunkFeed::refresh() {
     const auto found = tickets_.find(moved.piece);
     if (found != tickets_.end()) found->second.set_urgency(lane_of(moved), moved.urgency);
   }
-  if (change.accepted) writer_.send_control(*change.accepted);
+  if (change.accepted) {
+    if (change.is_cut_short) net_.metrics.add(Count::kViewCutShort);
+    writer_.send_control(*change.accepted);
+  }
   // Behind the chunks that are queued already: a chunk must not come after its own leave.
   for (std::size_t i = 0; i < change.leave.size(); i += protocol::kKeysPerMessageMax) {
     const std::size_t count = std::min(protocol::kKeysPerMessageMax, change.leave.size() - i);

@@ -23,6 +23,7 @@ struct HttpAnswer {
   std::string_view cache_control;
   std::string_view fields;  ///< further header lines, each with its CR LF
   int retry_after_s = 0;    ///< when it is worth coming again; 0: not said
+  bool is_fault = false;    ///< ours: the log tells of it
   std::string text;
   PayloadRef payload;
   StaticFileRef file;
@@ -43,6 +44,8 @@ HttpAnswer error_answer(int status, std::string_view code, std::string_view mess
 HttpAnswer unavailable_answer(double wait_s, std::string_view code, std::string_view message);
 /// What an answer of this status counts as.
 Count count_of(int status);
+/// What a request counts as that was refused for its form, with this status.
+Count count_of_refusal(int status);
 
 /// 200 with the payload (a map tile always is one), or 204 and what fills the chunk (nothing for an empty strip); for
 /// ever cacheable. `etag` must outlive the answer.
@@ -56,6 +59,7 @@ struct HeadOptions {
   bool names_keep_alive = false;        ///< HTTP/1.0 peers want to be told
   std::string_view allow_origin = "*";  ///< whose pages may read; empty: none
   bool varies_by_origin = false;        ///< a cache must not give it to another origin's pages
+  std::string_view request_id = {};     ///< empty: not told
 };
 /// Replaces `out` by the head of `answer`; reuses its memory.
 void write_head(const HttpAnswer& answer, const HeadOptions& options, std::string& out);

@@ -1,6 +1,5 @@
 #include "server/net/http_connection.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
@@ -11,15 +10,14 @@
 #include <utility>
 
 #include "core/base/check.hpp"
+#include "server/net/answer_writer.hpp"
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
 #include "server/net/pool_answers.hpp"
-#include "server/net/read_pace.hpp"
+#include "server/net/request_id.hpp"
 #include "server/net/stream_session.hpp"
-#include "server/net/tileset_routes.hpp"
 #include "server/net/websocket_handshake.hpp"
 #include "server/observe/log.hpp"
-#include "server/world/place_query.hpp"
 
 namespace talus::server {
 
@@ -45,11 +43,14 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
         door_(door),
         policy_(pass_.policy),
         limits_(policy_->limits),
+        request_ids_(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now()),
         scanner_(limits_),
         client_(pass_.client),
         allow_origin_(policy_->origins.allow_field(std::nullopt)),
+        writer_(net, channel_),
         answers_(net, executor_) {
-    set_deadline(limits_.silent_s, Count::kSilentTimeout);
+    set_deadline(limits_.silent_s, Count::kSilentTimeout, net.clock.now());
+    net_.policy.refresh(present_, present_version_);
   }
 
   Awaitable<void> run();
@@ -60,20 +61,25 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   void abort() override;
 
  private:
-  using Question = PoolAnswers::Question;
-  enum class Next { kRequest, kEnd };
+  /// What a request waits for once `serve_now` has done what can be done without waiting.
+  enum class Left : std::uint8_t { kNothing, kMaking, kSending, kRefusing };
 
-  Awaitable<bool> read_more();
-  Awaitable<Next> serve(std::string_view head);
-  Awaitable<Next> refuse(HttpFault fault);
-  Awaitable<Next> upgrade(const StreamRoute& route, std::string_view head);
+  void receive(std::size_t bytes);
+  bool serve_now(std::string_view head);
+  Awaitable<void> serve(std::string_view head);
+  void next_request(std::size_t head_bytes);
+  void begin_request(const HttpRequest& request);
+  bool answer_now(Route& route);
+  Awaitable<void> refuse(HttpFault fault);
+  Awaitable<void> upgrade(const StreamRoute& route, std::string_view head);
   std::optional<HttpAnswer> refuse_upgrade(const HttpRequest& request);
-  Awaitable<bool> send(HttpAnswer answer, bool is_head_only);
-  Awaitable<bool> write_all(std::array<asio::const_buffer, 2> buffers);
+  void send(HttpAnswer answer);
+  void note(AnswerWriter::State state);
+  Awaitable<void> send_rest();
   Awaitable<void> linger();
 
-  void set_deadline(double s, Count reason) {
-    deadline_ = net_.clock.now() + seconds(s);
+  void set_deadline(double s, Count reason, Instant now) {
+    deadline_ = now + seconds(s);
     deadline_reason_ = reason;
   }
 
@@ -84,144 +90,182 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   const Door door_;
   const PolicyRef policy_;  ///< outlives the pass, which a stream takes over
   const NetLimits& limits_;
+  PolicyRef present_;  ///< keys may have changed since the connection came: what opens a world is judged by the newest
+  std::uint64_t present_version_ = 0;
+  RequestIds request_ids_;
   HeadScanner scanner_;
   std::vector<char> input_;  ///< [0, input_size_) is received and not answered
   std::size_t input_size_ = 0;
-  std::string head_;  ///< of the answer being sent
   Instant deadline_ = Instant::max();
   Count deadline_reason_ = Count::kSilentTimeout;
+  bool is_serving_ = true;  ///< there will be another request
   bool is_keep_alive_ = true;
-  bool is_http_1_0_ = false;
   bool is_draining_ = false;
   bool is_idle_ = true;  ///< between requests
   std::uint64_t requests_ = 0;
 
-  ClientId client_;                ///< whose share of the pool the present request takes
-  std::string_view allow_origin_;  ///< of the present request; of the policy
+  // The present request.
+  bool is_http_1_0_ = false;
+  bool is_head_only_ = false;
+  bool has_body_ = false;
+  std::string_view path_;  ///< of the head, in input_
+  std::string request_id_;
+  ClientId client_;                ///< whose share of the pool it takes
+  std::string_view allow_origin_;  ///< of the policy
+  Route route_;
+  Left left_ = Left::kNothing;
+  HttpFault fault_{};
+  AnswerWriter writer_;
   PoolAnswers answers_;
-  ReadPace pace_;
 };
 
 Awaitable<void> HttpConnection::run() {
-  for (;;) {
+  while (is_serving_) {
     const auto length = scanner_.scan(std::string_view(input_.data(), input_size_));
     if (!length) {
+      request_id_ = request_ids_.next();
       co_await refuse(length.error());
-      break;
-    }
-    if (!*length) {
-      if (!co_await read_more()) break;
-      continue;
-    }
-    is_idle_ = false;
-    deadline_ = Instant::max();
-    const std::size_t head_bytes = **length;
-    const Next next = co_await serve(std::string_view(input_.data(), head_bytes));
-    if (next == Next::kEnd || !is_keep_alive_) break;
-    std::memmove(input_.data(), input_.data() + head_bytes, input_size_ - head_bytes);
-    input_size_ -= head_bytes;
-    scanner_.reset();
-    is_idle_ = input_size_ == 0;
-    if (is_idle_ && is_draining_) break;
-    if (is_idle_) {
-      set_deadline(limits_.idle_s, Count::kIdleTimeout);
+    } else if (*length) {
+      const std::string_view head(input_.data(), **length);
+      if (!serve_now(head)) co_await serve(head);
+      if (is_serving_) next_request(head.size());
     } else {
-      set_deadline(limits_.head_s, Count::kHeadTimeout);
+      // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
+      if (input_.size() < input_size_ + kHeadReadBytes) input_.resize(input_size_ + kHeadReadBytes);
+      const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
+      Channel::Read read;
+      if (Socket* clear = channel_.in_clear()) {  // saves a coroutine's frame for each request
+        const auto [error, got] = co_await clear->async_read_some(into, kAwait);
+        read = {error, got};
+      } else {
+        read = co_await channel_.read_some(into);
+      }
+      read.error ? void(is_serving_ = false) : receive(read.bytes);
     }
   }
   channel_.close();
 }
 
-Awaitable<bool> HttpConnection::read_more() {
-  // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
-  if (input_.size() < input_size_ + kHeadReadBytes) input_.resize(input_size_ + kHeadReadBytes);
-  const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
-  const auto [error, got] = co_await channel_.read_some(into);
-  if (error) co_return false;
-  if (input_size_ == 0) {
-    is_idle_ = false;
-    set_deadline(limits_.head_s, Count::kHeadTimeout);
-    // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
-    std::size_t skipped = 0;
-    if (got >= 2 && input_[0] == '\r' && input_[1] == '\n') skipped = 2;
-    std::memmove(input_.data(), input_.data() + skipped, got - skipped);
-    input_size_ = got - skipped;
-    co_return true;
+void HttpConnection::receive(std::size_t bytes) {
+  if (input_size_ != 0) {
+    input_size_ += bytes;
+    return;
   }
-  input_size_ += got;
-  co_return true;
+  is_idle_ = false;
+  set_deadline(limits_.head_s, Count::kHeadTimeout, net_.clock.now());
+  // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
+  const std::size_t skipped = bytes >= 2 && input_[0] == '\r' && input_[1] == '\n' ? 2 : 0;
+  if (skipped != 0) std::memmove(input_.data(), input_.data() + skipped, bytes - skipped);
+  input_size_ = bytes - skipped;
 }
 
-Awaitable<HttpConnection::Next> HttpConnection::refuse(HttpFault fault) {
-  net_.metrics.add(fault.status == 414   ? Count::kUriTooLong
-                   : fault.status == 431 ? Count::kHeadTooLarge
-                   : fault.status == 413 ? Count::kBodyTooLarge
-                                         : Count::kBadRequest);
-  is_keep_alive_ = false;
-  HttpAnswer answer = error_answer(fault.status, fault.code, fault.message);
-  if (co_await send(std::move(answer), false)) co_await linger();
-  co_return Next::kEnd;
-}
-
-Awaitable<HttpConnection::Next> HttpConnection::serve(std::string_view head) {
+/// All of it, if nothing has to be waited for, which is so for whatever is in memory and a peer that keeps up. False
+/// when `serve` has to go on.
+bool HttpConnection::serve_now(std::string_view head) {
+  is_idle_ = false;
+  deadline_ = Instant::max();
+  left_ = Left::kNothing;
   const Instant start = net_.clock.now();
-  const auto request = parse_head(head, limits_);
-  if (!request) co_return co_await refuse(request.error());
-  is_http_1_0_ = request->is_http_1_0;
-  is_keep_alive_ = request->is_keep_alive && !request->has_body && !is_draining_;
-  if (++requests_ >= limits_.requests_per_connection && is_keep_alive_) {
-    net_.metrics.add(Count::kRequestsExhausted);
-    is_keep_alive_ = false;
+  HttpRequest request;
+  if (const auto fault = parse_head_into(head, limits_, request)) {
+    request_id_ = request_ids_.next();
+    fault_ = *fault;
+    left_ = Left::kRefusing;
+    return false;
   }
-  if (pass_.is_proxy) client_ = client_of_address(counted_address(policy_->proxies.client_of(pass_.address, *request)));
-  allow_origin_ = policy_->origins.allow_field(request->field("origin"));
-  // Keys may have changed since this connection came: what opens a world is always judged by the newest.
-  const PolicyRef present = net_.policy.load();
+  begin_request(request);
   const RouteContext context{net_.worlds,
                              net_.files,
                              net_.worlds_json,
                              door_,
                              net_.is_ready.load(std::memory_order_relaxed),
-                             &present->tokens,
+                             &present_->tokens,
                              net_.clock.unix_seconds()};
-  Route route = resolve(*request, context);
+  route_ = resolve(request, context);
   net_.metrics.record(Hop::kReadLoop, net_.clock.now() - start);
+  if (!answer_now(route_)) left_ = Left::kMaking;
+  return left_ == Left::kNothing && !has_body_;
+}
 
-  HttpAnswer answer;
+void HttpConnection::begin_request(const HttpRequest& request) {
+  is_http_1_0_ = request.is_http_1_0;
+  is_head_only_ = request.method == HttpMethod::kHead;
+  has_body_ = request.has_body;
+  path_ = request.path;
+  is_keep_alive_ = request.is_keep_alive && !request.has_body && !is_draining_;
+  if (++requests_ >= limits_.requests_per_connection && is_keep_alive_) {
+    net_.metrics.add(Count::kRequestsExhausted);
+    is_keep_alive_ = false;
+  }
+  request_id_ = request_ids_.of(request.field("x-request-id"));
+  if (pass_.is_proxy) client_ = client_of_address(counted_address(policy_->proxies.client_of(pass_.address, request)));
+  allow_origin_ = policy_->origins.allow_field(request.field("origin"));
+  net_.policy.refresh(present_, present_version_);
+}
+
+/// False when the answer has to be made.
+bool HttpConnection::answer_now(Route& route) {
   if (auto* at_once = std::get_if<AnswerRoute>(&route)) {
     if (at_once->token_fault) net_.metrics.add(count_of(*at_once->token_fault));
-    answer = std::move(at_once->answer);
+    send(std::move(at_once->answer));
   } else if (const auto* chunk = std::get_if<ChunkRoute>(&route)) {
-    answer = co_await answers_.chunk(chunk->name, client_);
-  } else if (const auto* spawn = std::get_if<SpawnRoute>(&route)) {
-    Question question = [near_m = spawn->near_m](const World& world) {
-      return spawn_answer(standing_place(world.function(), near_m));
-    };
-    answer = co_await answers_.query(spawn->world, client_, std::move(question));
-  } else if (auto* points = std::get_if<PointsRoute>(&route)) {
-    Question question = [places = std::move(points->places_m)](const World& world) {
-      return json_answer(points_json(world.function(), places));
-    };
-    answer = co_await answers_.query(points->world, client_, std::move(question));
-  } else if (const auto* ray = std::get_if<RayRoute>(&route)) {
-    Question question = [ray = *ray](const World& world) {
-      return json_answer(ray_json(world.function(), ray.from_m, ray.direction, ray.max_m));
-    };
-    answer = co_await answers_.query(ray->world, client_, std::move(question));
-  } else if (const auto* tileset = std::get_if<TilesetRoute>(&route)) {
-    Question question = [place = tileset->place](const World& world) { return tileset_answer(world, place); };
-    answer = co_await answers_.query(tileset->world, client_, std::move(question));
-  } else if (const auto* stream = std::get_if<StreamRoute>(&route)) {
-    co_return co_await upgrade(*stream, head);
-  } else {
+    PayloadRef payload = net_.chunks.at_once(chunk->name);
+    if (payload == nullptr) return false;
+    net_.metrics.add(Count::kHttpChunkInMemory);
+    const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name.format);
+    send(chunk_answer(std::move(payload), etag, chunk->name.format));
+  } else if (std::holds_alternative<MetricsRoute>(route)) {
+    HttpAnswer answer;
     answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
     answer.text = net_.metrics.text();
+    send(std::move(answer));
+  } else {
+    return false;
   }
-  if (!present->tokens.empty() && answer.cache_control == kImmutable) answer.cache_control = kImmutablePrivate;
-  const bool is_head_only = request->method == HttpMethod::kHead;
-  const bool was_sent = co_await send(std::move(answer), is_head_only);
-  if (was_sent && request->has_body) co_await linger();
-  co_return was_sent ? Next::kRequest : Next::kEnd;
+  return true;
+}
+
+/// What `serve_now` has left.
+Awaitable<void> HttpConnection::serve(std::string_view head) {
+  if (left_ == Left::kRefusing) {
+    co_await refuse(fault_);
+    co_return;
+  }
+  if (left_ == Left::kMaking && std::holds_alternative<StreamRoute>(route_)) {
+    co_await upgrade(std::get<StreamRoute>(route_), head);
+    co_return;
+  }
+  if (left_ == Left::kMaking) {
+    HttpAnswer answer = co_await answers_.make(std::move(route_), client_);
+    send(std::move(answer));
+  }
+  co_await send_rest();
+  if (is_serving_ && has_body_) co_await linger();
+}
+
+void HttpConnection::next_request(std::size_t head_bytes) {
+  if (!is_keep_alive_) {
+    is_serving_ = false;
+    return;
+  }
+  input_size_ -= head_bytes;
+  if (input_size_ != 0) std::memmove(input_.data(), input_.data() + head_bytes, input_size_);
+  scanner_.reset();
+  is_idle_ = input_size_ == 0;
+  if (is_idle_ && is_draining_) is_serving_ = false;
+  const Count reason = is_idle_ ? Count::kIdleTimeout : Count::kHeadTimeout;
+  set_deadline(is_idle_ ? limits_.idle_s : limits_.head_s, reason, net_.clock.now());
+}
+
+Awaitable<void> HttpConnection::refuse(HttpFault fault) {
+  net_.metrics.add(count_of_refusal(fault.status));
+  is_keep_alive_ = false;
+  is_head_only_ = false;
+  path_ = {};
+  send(error_answer(fault.status, fault.code, fault.message));
+  co_await send_rest();
+  if (is_serving_) co_await linger();
+  is_serving_ = false;
 }
 
 /// What only this connection can say of a request that could be a WebSocket: whose page asks, and how many streams its
@@ -243,72 +287,65 @@ std::optional<HttpAnswer> HttpConnection::refuse_upgrade(const HttpRequest& requ
   return error_answer(429, "connections_per_address", "too many streams of your address");
 }
 
-Awaitable<HttpConnection::Next> HttpConnection::upgrade(const StreamRoute& route, std::string_view head) {
-  const auto request = parse_head(head, limits_);
-  TALUS_CHECK(request.has_value());
-  auto handshake = websocket_handshake(*request);
+Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_view head) {
+  HttpRequest request;
+  TALUS_CHECK(!parse_head_into(head, limits_, request));
+  auto handshake = websocket_handshake(request);
   if (handshake) {
-    if (auto refusal = refuse_upgrade(*request)) handshake = std::unexpected(std::move(*refusal));
+    if (auto refusal = refuse_upgrade(request)) handshake = std::unexpected(std::move(*refusal));
   }
   if (!handshake) {
-    HttpAnswer answer = std::move(handshake.error());
-    const bool is_head_only = request->method == HttpMethod::kHead;
-    co_return co_await send(std::move(answer), is_head_only) ? Next::kRequest : Next::kEnd;
+    send(std::move(handshake.error()));
+    co_await send_rest();
+    co_return;
   }
-  head_ = std::move(*handshake);
-  const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_), asio::const_buffer{}};
-  if (!co_await write_all(buffers)) co_return Next::kEnd;
+  handshake->insert(handshake->size() - 2, "X-Request-Id: " + request_id_ + "\r\n");
+  note(writer_.begin_head(std::move(*handshake)));
+  co_await send_rest();
+  if (!is_serving_) co_return;
+  is_serving_ = false;
   StreamStart start;
   start.framing = make_websocket_framing(limits_.message_bytes);
   start.world = route.world;
   start.is_admitted = route.is_admitted;
+  start.request_id = std::move(request_id_);
   const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
   start.received.assign(rest.begin(), rest.end());
   deadline_ = Instant::max();
   start_stream_session(net_, sweeper(), std::move(channel_), std::move(pass_), std::move(start));
-  co_return Next::kEnd;
 }
 
-Awaitable<bool> HttpConnection::send(HttpAnswer answer, bool is_head_only) {
-  net_.metrics.add(count_of(answer.status));
-  const HeadOptions options{sweeper().http_date(), is_keep_alive_, is_http_1_0_, allow_origin_,
-                            !policy_->origins.empty()};
-  write_head(answer, options, head_);
-  const auto body = answer.body();
-  const bool has_body = !is_head_only && answer.status != 204 && answer.status != 304;
-  if (has_body) net_.metrics.add(Count::kHttpBodyBytes, body.size());
-  const std::array<asio::const_buffer, 2> buffers{
-      asio::buffer(head_), has_body ? asio::const_buffer(body.data(), body.size()) : asio::const_buffer{}};
-  const Instant start = net_.clock.now();
-  const bool was_sent = co_await write_all(buffers);
-  net_.metrics.record(Hop::kWriteLoop, net_.clock.now() - start);
-  co_return was_sent;
-}
-
-/// One gather write when the peer keeps up: it is tried at once, and waited for only if the kernel is full.
-Awaitable<bool> HttpConnection::write_all(std::array<asio::const_buffer, 2> buffers) {
-  for (;;) {
-    asio::error_code error;
-    std::size_t sent = channel_.write_some(buffers, error);
-    if (error && error != asio::error::would_block) co_return false;
-    if (pace_.is_waiting()) pace_.took(sent, net_.clock.now());
-    for (asio::const_buffer& buffer : buffers) {
-      const std::size_t of_this = std::min(sent, buffer.size());
-      buffer += of_this;
-      sent -= of_this;
-    }
-    if (buffers[0].size() + buffers[1].size() == 0) break;
-    pace_.begin_wait(net_.clock.now());
-    if (co_await channel_.wait_writable()) co_return false;
+/// Sends `answer` as the present request's; what is not taken at once is left.
+void HttpConnection::send(HttpAnswer answer) {
+  if (!present_->tokens.empty() && answer.cache_control == kImmutable) answer.cache_control = kImmutablePrivate;
+  const HeadOptions options{sweeper().http_date(),     is_keep_alive_, is_http_1_0_, allow_origin_,
+                            !policy_->origins.empty(), request_id_};
+  const LogLevel level = answer.is_fault ? LogLevel::kError : LogLevel::kDebug;
+  if (is_logged(level)) {
+    log(level, "request",
+        {{"request", request_id_},
+         {"path", path_},
+         {"status", std::int64_t{answer.status}},
+         {"body_bytes", std::uint64_t{answer.body().size()}}});
   }
-  pace_.end_wait();
+  note(writer_.begin(std::move(answer), options, is_head_only_));
+}
+
+void HttpConnection::note(AnswerWriter::State state) {
+  left_ = state == AnswerWriter::State::kUnsent ? Left::kSending : Left::kNothing;
+  if (state == AnswerWriter::State::kFailed) is_serving_ = false;
+}
+
+Awaitable<void> HttpConnection::send_rest() {
+  if (left_ != Left::kSending) co_return;
+  const bool is_sent = co_await writer_.finish();
+  if (!is_sent) is_serving_ = false;
   deadline_ = Instant::max();
-  co_return true;
 }
 
 Awaitable<void> HttpConnection::linger() {
   channel_.shutdown_send();
-  set_deadline(kAnswerLingerS, Count::kEnd);
+  set_deadline(kAnswerLingerS, Count::kEnd, net_.clock.now());
   std::array<char, kHeadReadBytes> dropped;
   for (std::size_t total = 0; total < kLingerBytes;) {
     const asio::mutable_buffer into(dropped.data(), dropped.size());
@@ -325,9 +362,9 @@ void HttpConnection::sweep(Instant now) {
     if (is_gone || now - *since >= seconds(limits_.wait_s)) answers_.give_up();
     return;
   }
-  if (const auto pace = pace_.judge(now, limits_); pace != ReadPace::Verdict::kFine) {
+  if (const auto pace = writer_.judge_pace(now, limits_); pace != ReadPace::Verdict::kFine) {
     net_.metrics.add(count_of(pace));
-    pace_.end_wait();
+    writer_.end_wait();
     return channel_.reset();
   }
   if (now < deadline_) return;

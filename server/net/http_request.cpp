@@ -202,8 +202,7 @@ bool HttpRequest::lists(std::string_view name, std::string_view token) const {
   return false;
 }
 
-std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits) {
-  HttpRequest request;
+std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits& limits, HttpRequest& request) {
   Reported report;
   report.request = &request;
   http_parser parser;
@@ -214,12 +213,12 @@ std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const Ne
   const std::size_t taken = http_parser_execute(&parser, &settings(), head.data(), head.size());
   // An upgrade ends the parser's work on the last byte of the head; a declared body lies behind it.
   if (!report.is_complete || HTTP_PARSER_ERRNO(&parser) != HPE_OK || (taken != head.size() && parser.upgrade == 0)) {
-    return std::unexpected(kGrammar);
+    return kGrammar;
   }
   // The parser forgives runs of spaces; what another server sees there may be another target.
   const std::string_view line = head.substr(0, head.find('\r'));
-  if (std::count(line.begin(), line.end(), ' ') != 2) return std::unexpected(kGrammar);
-  if (parser.http_major != 1 || parser.http_minor > 1) return std::unexpected(kVersion);
+  if (std::count(line.begin(), line.end(), ' ') != 2) return kGrammar;
+  if (parser.http_major != 1 || parser.http_minor > 1) return kVersion;
   request.method = method_of(parser.method);
   request.is_http_1_0 = parser.http_minor == 0;
   request.is_keep_alive =
@@ -227,8 +226,14 @@ std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const Ne
   for (std::size_t i = 0; i < request.field_count; ++i) {
     request.fields[i].value = trimmed(request.fields[i].value);
   }
-  if (const auto fault = check_fields(request, parser.http_minor, limits)) return std::unexpected(*fault);
-  if (!split_target(report.url, request)) return std::unexpected(kTarget);
+  if (const auto fault = check_fields(request, parser.http_minor, limits)) return fault;
+  if (!split_target(report.url, request)) return kTarget;
+  return std::nullopt;
+}
+
+std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits) {
+  HttpRequest request;
+  if (const auto fault = parse_head_into(head, limits, request)) return std::unexpected(*fault);
   return request;
 }
 

@@ -68,7 +68,9 @@ struct HttpRequest {
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 
-/// `head` is what HeadScanner found.
+/// `head` is what HeadScanner found, `out` a new request. Nothing, or why it cannot be served.
+std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits& limits, HttpRequest& out);
+/// The same for who does not mind 2 KiB being moved.
 std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits);
 
 }  // namespace talus::server

@@ -33,7 +33,8 @@ struct NetLimits {
   std::size_t send_soft_bytes = 1024 * 1024;  ///< queued beyond this: chunks are taken back and asked for again
   std::size_t send_hard_bytes = 2048 * 1024;  ///< queued beyond this: reset
   std::size_t pongs_queued = 16;
-  std::size_t window_max = 16;  ///< chunks a session has in the making at once, shared fairly below that
+  double view_far_m = protocol::kFarMax;  ///< a view is clamped to it
+  std::size_t window_max = 16;            ///< chunks a session has in the making at once, shared fairly below that
 
   // Connections.
   std::size_t connections = 12'000;

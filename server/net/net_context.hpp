@@ -34,7 +34,8 @@ struct NetContext {
   std::atomic<bool> is_ready{false};     ///< what /readyz says
   std::atomic<std::size_t> sessions{0};  ///< streams open
   std::atomic<std::uint64_t> session_numbers{0};
-  std::atomic<std::size_t> queued_bytes{0};  ///< of frames that wait in all streams
+  std::atomic<std::uint64_t> request_numbers{0};  ///< connections that name requests
+  std::atomic<std::size_t> queued_bytes{0};       ///< of frames that wait in all streams
 };
 
 inline Duration seconds(double s) {

@@ -4,6 +4,8 @@
 // A connection lives under the policy it was accepted with, so nothing it has checked once changes under it.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -37,11 +39,20 @@ class PolicySlot {
   void store(PolicyRef policy) {
     const std::lock_guard lock(mutex_);
     policy_.swap(policy);
+    version_.fetch_add(1, std::memory_order_release);
+  }
+  /// Makes `known` the newest if it is not: `version` is of `known`, 0 for none. A look costs no lock.
+  void refresh(PolicyRef& known, std::uint64_t& version) const {
+    if (version_.load(std::memory_order_acquire) == version) return;
+    const std::lock_guard lock(mutex_);
+    known = policy_;
+    version = version_.load(std::memory_order_relaxed);
   }
 
  private:
   mutable std::mutex mutex_;
   PolicyRef policy_;
+  std::atomic<std::uint64_t> version_{1};  ///< changes under mutex_
 };
 
 }  // namespace talus::server

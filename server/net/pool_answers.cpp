@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "server/net/tileset_routes.hpp"
 #include "server/observe/log.hpp"
 #include "server/world/place_query.hpp"
 
@@ -15,7 +16,37 @@ constexpr double kQueryCostS = 0.005;
 
 }  // namespace
 
+Awaitable<HttpAnswer> PoolAnswers::make(Route route, ClientId client) {
+  Question question;
+  std::size_t world = 0;
+  if (const auto* chunk_route = std::get_if<ChunkRoute>(&route)) {
+    co_return co_await chunk(chunk_route->name, client);
+  }
+  if (const auto* spawn = std::get_if<SpawnRoute>(&route)) {
+    world = spawn->world;
+    question = [near_m = spawn->near_m](const World& of) {
+      return spawn_answer(standing_place(of.function(), near_m));
+    };
+  } else if (auto* points = std::get_if<PointsRoute>(&route)) {
+    world = points->world;
+    question = [places = std::move(points->places_m)](const World& of) {
+      return json_answer(points_json(of.function(), places));
+    };
+  } else if (const auto* ray = std::get_if<RayRoute>(&route)) {
+    world = ray->world;
+    question = [ray = *ray](const World& of) {
+      return json_answer(ray_json(of.function(), ray.from_m, ray.direction, ray.max_m));
+    };
+  } else {
+    const auto& tileset = std::get<TilesetRoute>(route);
+    world = tileset.world;
+    question = [place = tileset.place](const World& of) { return tileset_answer(of, place); };
+  }
+  co_return co_await query(world, client, std::move(question));
+}
+
 Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
+  net_.metrics.add(Count::kHttpChunkFromPool);
   const std::uint64_t asked = ++asked_;
   ChunkService::Done done = [this, owner = owner_.lock(), asked](ChunkResult result) mutable {
     asio::post(executor_, [this, owner = std::move(owner), asked, result = std::move(result)]() mutable {
@@ -24,7 +55,7 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
       bell_.ring();
     });
   };
-  ChunkService::Answer answer = net_.chunks.request(name, {client, Lane::kView, 0.0}, std::move(done));
+  ChunkService::Answer answer = net_.chunks.make(name, {client, Lane::kView, 0.0}, std::move(done));
   ChunkResult result = std::unexpected(ChunkError::kBusy);
   if (auto* payload = std::get_if<PayloadRef>(&answer)) {
     result = std::move(*payload);
@@ -39,7 +70,7 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
   }
   if (!result) {
     co_return result.error() == ChunkError::kBusy ? unavailable("busy", "too many chunks are being made: come again")
-                                                  : unavailable("chunk_failed", "this chunk could not be made");
+                                                  : faulty("chunk_failed", "this chunk could not be made");
   }
   co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
 }
@@ -53,7 +84,7 @@ Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Que
       answer = context.is_displaced ? unavailable("busy", "too many questions at once: come again") : question(of);
     } catch (const std::exception& fault) {
       log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
-      answer = unavailable("query_failed", "this question could not be answered");
+      answer = faulty("query_failed", "this question could not be answered");
     }
     asio::post(executor_, [this, owner = std::move(owner), asked, answer = std::move(answer)]() mutable {
       if (asked != asked_ || !waiting_since_) return;
@@ -68,7 +99,7 @@ Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Que
     log(LogLevel::kError, "query given up", {{"fault", "its job does not end"}});
     asio::post(executor_, [this, owner = std::move(owner), asked] {
       if (asked != asked_ || !waiting_since_) return;
-      query_result_ = unavailable("query_failed", "this question could not be answered");
+      query_result_ = faulty("query_failed", "this question could not be answered");
       bell_.ring();
     });
   };

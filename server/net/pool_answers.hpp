@@ -8,23 +8,21 @@
 
 #include "server/net/http_answer.hpp"
 #include "server/net/net_context.hpp"
+#include "server/net/routes.hpp"
 #include "server/net/socket.hpp"
 
 namespace talus::server {
 
 class PoolAnswers {
  public:
-  using Question = std::move_only_function<HttpAnswer(const World&)>;
-
   PoolAnswers(NetContext& net, const asio::io_context::executor_type& executor)
       : net_(net), executor_(executor), bell_(executor) {}
 
   /// Whom these belong to; kept alive while something is under way. Before the first request.
   void belong_to(std::weak_ptr<void> owner) { owner_ = std::move(owner); }
 
-  /// One at a time. 503 when the pool is full, the work failed, or `give_up` was called.
-  Awaitable<HttpAnswer> chunk(PayloadName name, ClientId client);
-  Awaitable<HttpAnswer> query(std::size_t world, ClientId client, Question question);
+  /// One at a time; of a route that asks the pool. 503 when the pool is full, the work failed, or `give_up` was called.
+  Awaitable<HttpAnswer> make(Route route, ClientId client);
 
   /// Since when something is awaited; nothing when nothing is.
   std::optional<Instant> waiting_since() const { return waiting_since_; }
@@ -32,8 +30,18 @@ class PoolAnswers {
   void give_up();
 
  private:
+  using Question = std::move_only_function<HttpAnswer(const World&)>;
+
+  Awaitable<HttpAnswer> chunk(PayloadName name, ClientId client);
+  Awaitable<HttpAnswer> query(std::size_t world, ClientId client, Question question);
   HttpAnswer unavailable(std::string_view code, std::string_view message) const {
     return unavailable_answer(net_.pool.wait_s(), code, message);
+  }
+  /// One that the operator has to hear of.
+  HttpAnswer faulty(std::string_view code, std::string_view message) const {
+    HttpAnswer answer = unavailable(code, message);
+    answer.is_fault = true;
+    return answer;
   }
 
   NetContext& net_;

@@ -25,7 +25,8 @@ constexpr std::size_t kSegmentsMax = 12;
 constexpr std::string_view kAllowReads = "Allow: GET, HEAD, OPTIONS\r\n";
 constexpr std::string_view kPreflight =
     "Allow: GET, HEAD, OPTIONS\r\nAccess-Control-Allow-Methods: GET, HEAD, OPTIONS\r\n"
-    "Access-Control-Allow-Headers: Authorization, If-None-Match, Content-Type\r\nAccess-Control-Max-Age: 86400\r\n";
+    "Access-Control-Allow-Headers: Authorization, If-None-Match, Content-Type, X-Request-Id\r\nAccess-Control-Max-Age: "
+    "86400\r\n";
 
 AnswerRoute text_answer(int status, std::string_view text) {
   HttpAnswer answer;

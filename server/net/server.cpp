@@ -20,6 +20,7 @@
 
 #include "server/net/connection_census.hpp"
 #include "server/net/http_connection.hpp"
+#include "server/net/request_id.hpp"
 #include "server/net/socket.hpp"
 #include "server/net/stream_session.hpp"
 #include "server/net/sweeper.hpp"
@@ -50,7 +51,8 @@ struct IoThread {
 };
 
 struct Listener {
-  Listener(const Executor& executor, Listen listen, bool with_tls) : acceptor(executor), kind(listen), is_tls(with_tls) {}
+  Listener(const Executor& executor, Listen listen, bool with_tls)
+      : acceptor(executor), kind(listen), is_tls(with_tls) {}
   Acceptor acceptor;
   const Listen kind;
   const bool is_tls;
@@ -262,6 +264,8 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
     if (kind == Listen::kTcp) {
       StreamStart start;
       start.framing = make_tcp_framing(pass.policy->limits.message_bytes);
+      start.request_id =
+          RequestIds(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now()).next();
       start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
     } else {
       const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;

@@ -12,6 +12,7 @@
 #include "protocol/message.hpp"
 #include "server/net/chunk_feed.hpp"
 #include "server/net/frame_writer.hpp"
+#include "server/net/request_id.hpp"
 #include "server/net/token_bucket.hpp"
 #include "server/observe/log.hpp"
 
@@ -104,6 +105,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   Phase phase_ = Phase::kHello;
   bool is_ended_ = false;
   std::string id_;
+  const std::string request_id_;
   const NetLimits& limits_;
   TokenBucket messages_;
 
@@ -127,6 +129,7 @@ StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Channel channel,
       world_(start.world),
       received_(std::move(start.received)),
       is_admitted_(start.is_admitted),
+      request_id_(std::move(start.request_id)),
       limits_(pass_.policy->limits),
       messages_(limits_.messages_per_s, limits_.message_burst, net.clock.now()),
       writer_(net, channel_, *framing_),
@@ -245,8 +248,9 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
                 weak_from_this());
   phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);
-  id_ = fmt::format("{:016x}", mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
-  log(LogLevel::kInfo, "session opened", {{"session", id_}, {"world", world.name()}, {"client", hello.client}});
+  id_ = hex_digits(mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
+  log(LogLevel::kInfo, "session opened",
+      {{"request", request_id_}, {"session", id_}, {"world", world.name()}, {"client", hello.client}});
   writer_.send_control(protocol::Welcome{version, id_, world.hash(), std::string(format->name), world.manifest_json()});
 }
 
@@ -279,7 +283,7 @@ void StreamSession::say_bye(ByeReason reason, std::string_view message) {
   if (phase_ == Phase::kClosing) return;
   net_.metrics.add(count_of(reason));
   log(LogLevel::kInfo, "session ended by the server",
-      {{"session", id_}, {"reason", protocol::name_of(reason)}, {"message", message}});
+      {{"request", request_id_}, {"session", id_}, {"reason", protocol::name_of(reason)}, {"message", message}});
   writer_.send_control(protocol::Bye{reason, std::string(message)});
   begin_closing(close_code(reason), message);
 }
@@ -305,7 +309,8 @@ void StreamSession::end() {
 /// Ends who would not hear a goodbye any more.
 void StreamSession::cut(ByeReason reason, std::string_view limit) {
   net_.metrics.add(count_of(reason));
-  log(LogLevel::kInfo, "session cut off", {{"session", id_}, {"reason", protocol::name_of(reason)}, {"limit", limit}});
+  log(LogLevel::kInfo, "session cut off",
+      {{"request", request_id_}, {"session", id_}, {"reason", protocol::name_of(reason)}, {"limit", limit}});
   abort();
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/net/framing.hpp"
@@ -15,6 +16,7 @@ struct StreamStart {
   std::optional<std::size_t> world;  ///< named by the URL; else the hello names it
   std::vector<std::byte> received;   ///< bytes behind the handshake
   bool is_admitted = false;          ///< by its URL; else the hello brings the token, if one is needed
+  std::string request_id;            ///< what its log lines are found by
 };
 
 /// On the thread of `sweeper`, which is that of `channel`.

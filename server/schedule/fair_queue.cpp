@@ -52,6 +52,10 @@ void FairQueue::add(ItemRef item, ClientId id) {
 
 FairQueue::Pushed FairQueue::push(ItemRef item, ClientId client, Lane lane) {
   Pushed pushed;
+  if (const auto found = clients_.find(client); found != clients_.end() && found->second.queued >= client_items_max_) {
+    pushed.is_over_share = true;
+    return pushed;
+  }
   if (size(lane) >= lane_items_max_) {
     pushed.displaced = take_from_greediest(lane, client);
     if (pushed.displaced == nullptr) return pushed;

@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -57,11 +58,13 @@ class FairQueue {
   };
   using ItemRef = std::shared_ptr<Item>;
 
-  explicit FairQueue(std::size_t lane_items_max) : lane_items_max_(lane_items_max) {}
+  explicit FairQueue(std::size_t lane_items_max, std::size_t client_items_max = std::numeric_limits<std::size_t>::max())
+      : lane_items_max_(lane_items_max), client_items_max_(client_items_max) {}
 
   struct Pushed {
     bool is_queued = false;
-    ItemRef displaced;  ///< had to make room
+    bool is_over_share = false;  ///< not queued, since the client has as much waiting as one may have
+    ItemRef displaced;           ///< had to make room
   };
   /// When the lane is full, the client with the most in it loses its least urgent item, unless that client would be
   /// `client` itself.
@@ -119,6 +122,7 @@ class FairQueue {
   void forget_idle_clients();
 
   const std::size_t lane_items_max_;
+  const std::size_t client_items_max_;  ///< of one client, in all lanes
   std::unordered_map<ClientId, Client> clients_;
   std::array<std::size_t, kLanes> lane_sizes_{};
   std::size_t items_ = 0;

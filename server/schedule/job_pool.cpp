@@ -18,7 +18,9 @@ constexpr double kStopS = 2;
 }  // namespace
 
 JobPool::JobPool(JobPoolOptions options)
-    : options_(options), queue_(options.queued_per_lane), seats_(options.threads + options.spares) {
+    : options_(options),
+      queue_(options.queued_per_lane, options.queued_per_client),
+      seats_(options.threads + options.spares) {
   TALUS_CHECK(options_.threads > 0);
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < options_.threads; ++i) seat_thread(i);
@@ -41,6 +43,7 @@ JobPool::Pushed JobPool::push(const JobTerms& terms, Work work, OnHang on_hang) 
     const std::lock_guard lock(mutex_);
     if (stopped_) return pushed;
     FairQueue::Pushed queued = queue_.push(job, terms.client, terms.lane);
+    pushed.is_over_share = queued.is_over_share;
     if (!queued.is_queued) return pushed;
     pushed.displaced = std::static_pointer_cast<Job>(std::move(queued.displaced));
   }

@@ -27,6 +27,7 @@ namespace talus::server {
 struct JobPoolOptions {
   std::size_t threads = 1;
   std::size_t queued_per_lane = 256;
+  std::size_t queued_per_client = 256;
   double job_s = 0;        ///< a job that runs longer is given up; 0: none is
   std::size_t spares = 0;  ///< threads that may take the place of hung ones
 };
@@ -65,8 +66,9 @@ class JobPool {
   using JobRef = std::shared_ptr<Job>;
 
   struct Pushed {
-    JobRef job;        ///< null when the lane is full or the pool has stopped: shed and come again
-    JobRef displaced;  ///< to be given to `tell_displaced` once the caller holds no lock
+    JobRef job;                  ///< null when the lane is full or the pool has stopped: shed and come again
+    bool is_over_share = false;  ///< null for this reason: the client has too much waiting
+    JobRef displaced;            ///< to be given to `tell_displaced` once the caller holds no lock
   };
 
   explicit JobPool(JobPoolOptions options);

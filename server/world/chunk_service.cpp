@@ -49,18 +49,31 @@ ChunkService::ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& po
     : cache_(cache), stored_(stored), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
 
 ChunkService::Answer ChunkService::request(const PayloadName& name, const Asker& asker, Done done) {
+  if (PayloadRef payload = at_once(name)) return payload;
+  return make(name, asker, std::move(done));
+}
+
+PayloadRef ChunkService::at_once(const PayloadName& name) {
+  const Instant start = clock_.now();
+  PayloadRef payload = cache_.load(name);
+  const Duration took = clock_.now() - start;
+  metrics_.record(Hop::kLoad, took);
+  if (payload != nullptr) {
+    metrics_.add(Count::kChunkHit);
+    metrics_.record(Hop::kRequest, took);
+    return payload;
+  }
+  payload = ruled_out(name);
+  if (payload == nullptr) return nullptr;
+  metrics_.add(Count::kChunkRuledOut);
+  metrics_.record(Hop::kRequest, clock_.now() - start);
+  return payload;
+}
+
+ChunkService::Answer ChunkService::make(const PayloadName& name, const Asker& asker, Done done) {
   const Instant start = clock_.now();
   JobPool::JobRef displaced;
-  Answer answer;
-  if (PayloadRef cached = load(name)) {
-    metrics_.add(Count::kChunkHit);
-    answer = std::move(cached);
-  } else if (PayloadRef known = ruled_out(name)) {
-    metrics_.add(Count::kChunkRuledOut);
-    answer = std::move(known);
-  } else {
-    answer = join_or_start(name, asker, std::move(done), displaced);
-  }
+  Answer answer = join_or_start(name, asker, std::move(done), displaced);
   JobPool::tell_displaced(displaced);
   metrics_.record(Hop::kRequest, clock_.now() - start);
   return answer;
@@ -76,13 +89,6 @@ PayloadRef ChunkService::ruled_out(const PayloadName& name) {
     cache_.store(name, payload);
     stored_.store(name, payload, DiskCache::Commit::kLater);
   }
-  return payload;
-}
-
-PayloadRef ChunkService::load(const PayloadName& name) {
-  const Instant start = clock_.now();
-  PayloadRef payload = cache_.load(name);
-  metrics_.record(Hop::kLoad, clock_.now() - start);
   return payload;
 }
 
@@ -118,7 +124,7 @@ ChunkService::Answer ChunkService::join_or_start(const PayloadName& name, const 
       pool_.push(terms, std::move(work), [this, name, id, job_end] { give_up(name, id, *job_end); });
   displaced = std::move(pushed.displaced);
   if (pushed.job == nullptr) {
-    metrics_.add(Count::kChunkShed);
+    metrics_.add(pushed.is_over_share ? Count::kChunkOverShare : Count::kChunkShed);
     return ChunkError::kBusy;
   }
   Entry& entry = flights_[name];
@@ -134,12 +140,12 @@ void ChunkService::run(const PayloadName& name, std::uint64_t flight_id, const J
     return publish(name, flight_id, std::unexpected(ChunkError::kBusy));
   }
   const Instant start = clock_.now();
-  make(name, flight_id, context);
+  build(name, flight_id, context);
   const double took_s = std::chrono::duration<double>(clock_.now() - start).count();
   pool_.charge(context.client, took_s - context.cost_s);
 }
 
-void ChunkService::make(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context) {
+void ChunkService::build(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context) {
   if (std::optional<ChunkPayload> stored = stored_.load(name, context.thread)) {
     metrics_.add(Count::kChunkStored);
     return publish(name, flight_id, std::make_shared<const ChunkPayload>(std::move(*stored)));

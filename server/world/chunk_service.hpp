@@ -78,7 +78,12 @@ class ChunkService {
   ChunkService(const ChunkService&) = delete;
   ChunkService& operator=(const ChunkService&) = delete;
 
-  /// Requires is_valid(name.key) and a world that exists.
+  /// What is in memory or can be known without work; else nullptr, and `make` is the next step. Cheap. Requires
+  /// is_valid(name.key) and a world that exists.
+  PayloadRef at_once(const PayloadName& name);
+  /// Joins or starts the job that makes it.
+  Answer make(const PayloadName& name, const Asker& asker, Done done);
+  /// The one, then the other.
   Answer request(const PayloadName& name, const Asker& asker, Done done);
 
   /// Chunks being made or waiting to be.
@@ -95,11 +100,10 @@ class ChunkService {
     std::vector<Waiter> waiters;
   };
 
-  PayloadRef load(const PayloadName& name);
   PayloadRef ruled_out(const PayloadName& name);
   Answer join_or_start(const PayloadName& name, const Asker& asker, Done done, JobPool::JobRef& displaced);
   void run(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
-  void make(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
+  void build(const PayloadName& name, std::uint64_t flight_id, const JobPool::Context& context);
   void fail(const PayloadName& name, std::uint64_t flight_id, std::string_view fault);
   /// Shared by a job and whoever gives it up; under mutex_.
   struct JobEnd {

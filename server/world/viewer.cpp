@@ -40,12 +40,14 @@ Lane lane_of(const WantedPiece& wanted) {
   return wanted.piece.key.lod < kCoverLod ? Lane::kView : Lane::kCover;
 }
 
-Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips)
-    : shape_(shape), takes_strips_(takes_strips), credit_bytes_(credit_bytes) {}
+Viewer::Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips, double far_m_max)
+    : shape_(shape), takes_strips_(takes_strips), far_m_max_(far_m_max), credit_bytes_(credit_bytes) {}
 
 bool Viewer::on_message(const protocol::Message& message) {
   if (const auto* view = std::get_if<protocol::ViewMessage>(&message)) {
     view_ = protocol::ViewMessage{view->sequence, protocol::clamped(view->view, shape_)};
+    is_view_cut_short_ = view_->view.far_m > far_m_max_;
+    view_->view.far_m = std::min(view_->view.far_m, far_m_max_);
     is_view_new_ = true;
     is_stale_ = true;
   } else if (const auto* held = std::get_if<protocol::Held>(&message)) {
@@ -213,6 +215,7 @@ Viewer::Change Viewer::refresh() {
   if (is_view_new_) {
     const auto chunks = static_cast<std::uint32_t>(next.size());
     change.accepted = protocol::ViewAccepted{view_->sequence, view_->view, chunks};
+    change.is_cut_short = is_view_cut_short_;
   }
   std::swap(chunks_, next);
   if (takes_strips_) merge_strips(next, change);

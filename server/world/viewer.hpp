@@ -16,6 +16,7 @@
 #include "core/base/hash.hpp"
 #include "core/grid/chunk_face.hpp"
 #include "protocol/interest_area.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/message.hpp"
 #include "server/schedule/fair_queue.hpp"
 
@@ -47,7 +48,9 @@ Lane lane_of(const WantedPiece& wanted);
 class Viewer {
  public:
   /// `credit_bytes` is what the client can take at first; `takes_strips` is false for clients of version 1.
-  Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips);
+  /// No view reaches further than `far_m_max`.
+  Viewer(const protocol::WorldShape& shape, std::uint64_t credit_bytes, bool takes_strips,
+         double far_m_max = protocol::kFarMax);
 
   /// View, Held, Want and Credit. False for a message that is not a viewer's: the client broke the protocol.
   bool on_message(const protocol::Message& message);
@@ -57,6 +60,7 @@ class Viewer {
 
   struct Change {
     std::optional<protocol::ViewAccepted> accepted;  ///< for the latest view, if there was a new one
+    bool is_cut_short = false;                       ///< that view asked to see further than is allowed here
     std::vector<ChunkKey> leave;                     ///< held by the client, no longer wanted; with their strips
     std::vector<Piece> cancelled;                    ///< in flight, no longer wanted
     std::vector<WantedPiece> moved;                  ///< in flight, still wanted, with their new urgency
@@ -109,7 +113,9 @@ class Viewer {
   std::vector<ChunkKey> want_;                 ///< nearest first
   std::vector<StripKey> want_strips_;
   const bool takes_strips_;
+  const double far_m_max_;
   bool is_view_new_ = false;
+  bool is_view_cut_short_ = false;
   bool is_stale_ = false;
 
   States chunks_;

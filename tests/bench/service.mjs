@@ -1,7 +1,8 @@
 #!/usr/bin/env node
 // Figures of the whole service, each as one command; server and clients share this machine, so times hold for it only.
 //   node tests/bench/service.mjs viewers [N,N,...] [SECONDS]   viewers in flight: latencies, memory, chunks per CPU second
-//   node tests/bench/service.mjs scanner [SECONDS]             an ordinary client without and with a scanner beside it
+//   node tests/bench/service.mjs scanner [SECONDS] [MIB]       an ordinary client without and with a scanner beside it, over
+//                                                              a memory cache so small that the scanner fills it
 //   node tests/bench/service.mjs join [RUNS]                   to walkable ground over 4 Mbit/s (a network namespace: root)
 // Needs build/release/bin/talusd and talus (cmake --build --preset release).
 import { execFile, execFileSync } from 'node:child_process';
@@ -58,18 +59,33 @@ async function viewers(counts = '1,10,50,100,250,500', seconds = '30') {
   }
 }
 
-async function scanner(seconds = '40') {
+/// Of the chunks asked for over HTTP, the part that was there: the ordinary client's hit ratio, in percent. The scanner and
+/// the viewers of the scenario stream.
+function hitRatio(report) {
+  const from = (where) => report.server.counters[`talus_http_chunks_total{from="${where}"}`] ?? 0;
+  return (100 * from('memory')) / (from('memory') + from('pool'));
+}
+
+async function scanner(seconds = '40', mib = '16') {
   const scenario = join(root, 'client_sample/load/scenarios/scanner.toml');
-  console.log('scanners  cached p50/p99 ms (requests)  first p50/p99 ms  chunks found in memory, built, scanned; faults');
-  const server = await startServer(['--log-level', 'warning']);
+  console.log('scanners  hit ratio %  cached p50/p99 ms (requests)  first p50/p99 ms  chunks built, scanned; faults');
+  const server = await startServer(['--log-level', 'warning', '--cache-mib', mib]);
+  const ratios = [];
+  const slowest = [];
   try {
-    // The same place, so the second pair of runs finds everything that the first has left in the cache.
-    for (const scanners of ['0', '1', '0', '1']) {
+    // The same place, so that every run but the first finds what is left of the hot set in the cache.
+    for (const scanners of ['0', '0', '1', '0', '1']) {
       const report = await load(server, [scenario, '--scan', scanners, '--seconds', seconds]);
       const { first_byte: first, first_byte_again: again } = report.kinds.fetch;
-      console.log(`${scanners.padStart(8)}  ${ms(again?.p50_s)} / ${ms(again?.p99_s)} (${again?.count})  first ${ms(first?.p50_s)} / ${ms(first?.p99_s)}  ` +
-        `hits ${outcome(report, 'hit')}  built ${outcome(report, 'built')}  scanned ${report.kinds.scan?.chunks ?? 0}  faults ${report.faults}`);
+      ratios.push(hitRatio(report));
+      slowest.push(again?.p99_s);
+      console.log(`${scanners.padStart(8)}  ${ratios.at(-1).toFixed(2).padStart(11)}  ${ms(again?.p50_s)} / ${ms(again?.p99_s)} (${again?.count})  ` +
+        `first ${ms(first?.p50_s)} / ${ms(first?.p99_s)}  built ${outcome(report, 'built')}  scanned ${report.kinds.scan?.chunks ?? 0}  faults ${report.faults}`);
     }
+    const [, ...measured] = ratios;
+    const mean = (from) => (measured[from] + measured[from + 2]) / 2;
+    console.log(`hit ratio ${mean(0).toFixed(2)} % without, ${mean(1).toFixed(2)} % with a scanner: falls by ${(mean(0) - mean(1)).toFixed(2)} points (goal 5)`);
+    console.log(`cached p99, with to without: ${(slowest[2] / slowest[1]).toFixed(2)} and ${(slowest[4] / slowest[3]).toFixed(2)} (goal 2)`);
   } finally {
     await server.stop();
   }

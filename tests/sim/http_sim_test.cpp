@@ -1,6 +1,7 @@
 // A whole server, asked over raw sockets.
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -170,6 +171,57 @@ TEST(HttpSim, EndsAConnectionAfterItsRequests) {
   EXPECT_EQ(read_response(peer).field("Connection"), "");
   EXPECT_EQ(read_response(peer).field("Connection"), "close");
   EXPECT_EQ(read_response(peer).status, 0);
+}
+
+TEST(HttpSim, NamesEveryAnswerByItsRequest) {
+  RunningServer server;
+  const std::string& http = server->http_address();
+  EXPECT_EQ(get(http, "/healthz", "X-Request-Id: from-the-proxy.1\r\n").field("X-Request-Id"), "from-the-proxy.1");
+  Peer peer(http);
+  peer.send(get_request("/healthz") + get_request("/v1/nothing") + get_request("/v1/worlds/default/spawn"));
+  std::set<std::string> made;
+  for (int i = 0; i < 3; ++i) made.insert(read_response(peer).field("X-Request-Id"));
+  EXPECT_EQ(made.size(), 3U);
+  EXPECT_FALSE(made.contains(""));
+  Peer refused(http);
+  refused.send("nonsense\r\n\r\n");
+  EXPECT_EQ(read_response(refused).field("X-Request-Id").size(), 16U);
+  EXPECT_EQ(get(http, "/healthz", "X-Request-Id: \"quoted\"\r\n").field("X-Request-Id").size(), 16U);
+  const Response stream = get(http, "/v1/worlds/default/stream",
+                              "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nX-Request-Id: mine\r\n");
+  EXPECT_EQ(stream.status, 101);
+  EXPECT_EQ(stream.field("X-Request-Id"), "mine");
+}
+
+TEST(HttpSim, CountsWhatWasInMemoryAndWhatWasMade) {
+  RunningServer server;
+  const std::string target = surface_chunk(server->http_address(), 4, 9, 9);
+  const auto from_pool = server.count(Count::kHttpChunkFromPool);
+  const auto in_memory = server.count(Count::kHttpChunkInMemory);
+  const Response again = get(server->http_address(), target);
+  EXPECT_EQ(again.status, 200);
+  EXPECT_EQ(server.count(Count::kHttpChunkInMemory), in_memory + 1);
+  EXPECT_EQ(server.count(Count::kHttpChunkFromPool), from_pool);
+  EXPECT_GT(from_pool, 0U);
+  EXPECT_GE(server.count(Count::kHttpBodyBytes), again.body.size());
+}
+
+TEST(HttpSim, LetsOneClientHaveOnlySoMuchWaiting) {
+  Settings settings = quiet_settings();
+  settings.threads = 1;
+  settings.cold_per_client = 2;
+  RunningServer server(settings);
+  std::vector<Peer> peers;
+  for (int i = 0; i < 30; ++i) peers.emplace_back(server->http_address());
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    peers[i].send(get_request("/v1/worlds/default/chunks/6/" + std::to_string(i * 100) + "/0/0.drc"));
+  }
+  std::uint64_t refused = 0;
+  for (Peer& peer : peers) refused += read_response(peer).status == 503 ? 1U : 0U;
+  EXPECT_GT(refused, 0U);
+  EXPECT_EQ(server.count(Count::kChunkOverShare), refused);
+  EXPECT_EQ(server.count(Count::kChunkShed), 0U);
 }
 
 TEST(HttpSim, TurnsAwayConnectionsBeyondItsLimits) {

@@ -19,7 +19,7 @@ class MadeUpServer {
       : pool({.threads = 1, .job_s = job_s, .spares = 2}),
         chunks(cache, stored, pool, builder, clock, metrics),
         net{worlds, files, clock, chunks, pool, metrics, "[]", PolicySlot(std::make_shared<const NetPolicy>()),
-            {},     {},    {},    {},     {},   {},      {}},
+            {},     {},    {},    {},     {},   {},      {},   {}},
         network(net, 1) {
     http_address = listen(Listen::kHttp);
     tcp_address = listen(Listen::kTcp);

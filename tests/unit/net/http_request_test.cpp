@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <set>
 #include <string>
+
+#include "server/net/request_id.hpp"
 
 namespace talus::server {
 namespace {
@@ -113,6 +117,24 @@ TEST(HttpRequest, EndsItsHeadBeforeABodyEvenForAnUpgrade) {
   ASSERT_TRUE(request.has_value());
   EXPECT_TRUE(request->has_body);
   EXPECT_TRUE(read("GET /x HTTP/1.1\r\nHost: a\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n\x82").has_value());
+}
+
+TEST(RequestIds, AreThePeersWhereTheyAreFitAndElseMade) {
+  RequestIds ids(7, Instant(std::chrono::seconds(5)));
+  EXPECT_EQ(ids.of("4bf92f35-77b3.a:b_c+d/e=1"), "4bf92f35-77b3.a:b_c+d/e=1");
+  EXPECT_EQ(ids.of(std::string(64, 'x')), std::string(64, 'x'));
+  std::set<std::string> made;
+  for (const std::string& unfit : {std::string(), std::string(65, 'x'), std::string("a b"), std::string("a\"b"),
+                                   std::string("a\\b"), std::string("a\tb"), std::string("\xC3\xA9")}) {
+    const std::string id = ids.of(unfit);
+    EXPECT_EQ(id.size(), 16U) << unfit;
+    EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
+    made.insert(id);
+  }
+  made.insert(ids.of(std::nullopt));
+  made.insert(RequestIds(8, Instant(std::chrono::seconds(5))).next());
+  made.insert(RequestIds(7, Instant(std::chrono::seconds(6))).next());
+  EXPECT_EQ(made.size(), 10U) << "no two are alike";
 }
 
 }  // namespace

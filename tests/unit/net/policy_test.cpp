@@ -1,9 +1,14 @@
 // Whose pages, whose word and whose pace: the small rules of a policy.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <thread>
 #include <vector>
 
 #include "server/net/allowed_origins.hpp"
+#include "server/net/net_policy.hpp"
 #include "server/net/read_pace.hpp"
 #include "server/net/trusted_proxies.hpp"
 
@@ -96,6 +101,17 @@ TEST(ReadPace, EndsWhoTakesNothingAndWhoTakesTooLittle) {
   for (int s = 1; s < 10; ++s) trickles.took(1000, at(s));
   EXPECT_EQ(trickles.judge(at(10), limits), Verdict::kTooSlow);
 
+  ReadPace trickles_after_a_burst;
+  trickles_after_a_burst.begin_wait(at(0));
+  trickles_after_a_burst.took(200'000, at(0.1));
+  double cut_s = 0;
+  for (double s = 0.05; s < 60 && cut_s == 0; s += 0.05) {
+    if (std::fmod(s, 2) < 0.05) trickles_after_a_burst.took(500, at(s));
+    if (trickles_after_a_burst.judge(at(s), limits) == Verdict::kTooSlow) cut_s = s;
+  }
+  EXPECT_GT(cut_s, 10);
+  EXPECT_LT(cut_s, 12) << "neither the burst nor the trickle buys time";
+
   ReadPace slow_but_fair;
   slow_but_fair.begin_wait(at(0));
   for (int s = 1; s < 100; ++s) {
@@ -104,6 +120,38 @@ TEST(ReadPace, EndsWhoTakesNothingAndWhoTakesTooLittle) {
   }
   slow_but_fair.end_wait();
   EXPECT_EQ(slow_but_fair.judge(at(1000), limits), Verdict::kFine) << "nothing waits for it";
+}
+
+TEST(PolicySlot, GivesTheNewestToWhoLooksAgain) {
+  PolicySlot slot(std::make_shared<const NetPolicy>());
+  PolicyRef known;
+  std::uint64_t version = 0;
+  slot.refresh(known, version);
+  EXPECT_EQ(known, slot.load());
+  const PolicyRef first = known;
+  slot.refresh(known, version);
+  EXPECT_EQ(known, first);
+  slot.store(std::make_shared<const NetPolicy>());
+  slot.refresh(known, version);
+  EXPECT_NE(known, first);
+  EXPECT_EQ(known, slot.load());
+}
+
+TEST(PolicySlot, IsReadByManyWhileItChanges) {
+  PolicySlot slot(std::make_shared<const NetPolicy>());
+  std::atomic<bool> is_over = false;
+  std::vector<std::jthread> readers;
+  for (int i = 0; i < 3; ++i) {
+    readers.emplace_back([&] {
+      PolicyRef known;
+      std::uint64_t version = 0;
+      while (!is_over) slot.refresh(known, version);
+      slot.refresh(known, version);
+      EXPECT_EQ(known, slot.load());
+    });
+  }
+  for (int i = 0; i < 200; ++i) slot.store(std::make_shared<const NetPolicy>());
+  is_over = true;
 }
 
 }  // namespace

@@ -260,5 +260,18 @@ TEST(FairQueue, LosesAndDoublesNothing) {
   EXPECT_EQ(queue.clear().size(), queued.size());
 }
 
+TEST(FairQueue, LetsNoClientHaveMoreWaitingThanItsShareInAllLanes) {
+  FairQueue queue(256, 3);
+  for (const Lane lane : {Lane::kFeet, Lane::kView, Lane::kCover}) EXPECT_TRUE(queue.push(job(1), 1, lane).is_queued);
+  const auto fourth = queue.push(job(1), 1, Lane::kView);
+  EXPECT_FALSE(fourth.is_queued);
+  EXPECT_TRUE(fourth.is_over_share);
+  EXPECT_EQ(fourth.displaced, nullptr);
+  EXPECT_TRUE(queue.push(job(2), 2, Lane::kView).is_queued) << "others have their own";
+  queue.pop();
+  queue.pop();
+  EXPECT_TRUE(queue.push(job(1), 1, Lane::kView).is_queued) << "what has started waits no more";
+}
+
 }  // namespace
 }  // namespace talus::server

@@ -61,9 +61,9 @@ TEST(JobPool, LooksAtUrgencyWhenAThreadIsFreeNotWhenTheJobCameIn) {
   HeldPool held;
   std::string order;
   const auto append = [&](char c) { return [&order, c](const JobPool::Context&) { order += c; }; };
-  const auto [first, none] = held.pool.push(terms(Lane::kView, 1.0), append('a'));
+  const auto first = held.pool.push(terms(Lane::kView, 1.0), append('a'));
   held.pool.push(terms(Lane::kView, 2.0), append('b'));
-  first->urgency.store(50.0);
+  first.job->urgency.store(50.0);
   held.open();
   finish(held.pool);
   EXPECT_EQ(order, "ba");
@@ -134,8 +134,8 @@ TEST(JobPool, RefusesWhenALaneIsFullButKeepsTheOtherOpen) {
 TEST(JobPool, NeverStartsACancelledJobAndFreesItsPlace) {
   HeldPool held(1);
   bool has_run = false;
-  const auto [job, none] = held.pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context&) { has_run = true; });
-  EXPECT_TRUE(held.pool.cancel(job));
+  const auto pushed = held.pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context&) { has_run = true; });
+  EXPECT_TRUE(held.pool.cancel(pushed.job));
   EXPECT_EQ(held.pool.queued(Lane::kView), 0U);
   held.open();
   finish(held.pool);
@@ -147,13 +147,13 @@ TEST(JobPool, TellsARunningJobThatItIsCancelled) {
   std::promise<void> started;
   std::promise<void> cancelled;
   std::promise<bool> seen;
-  const auto [job, none] = pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context& context) {
+  const auto pushed = pool.push(terms(Lane::kView, 0.0), [&](const JobPool::Context& context) {
     started.set_value();
     cancelled.get_future().wait();
     seen.set_value(context.token.is_cancelled());
   });
   started.get_future().wait();
-  EXPECT_FALSE(pool.cancel(job));
+  EXPECT_FALSE(pool.cancel(pushed.job));
   cancelled.set_value();
   EXPECT_TRUE(seen.get_future().get());
 }

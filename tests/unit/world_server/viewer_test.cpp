@@ -312,5 +312,19 @@ TEST(Viewer, RefusesMessagesThatAreNotAViewers) {
   EXPECT_FALSE(viewer.on_message(protocol::Idle{}));
 }
 
+TEST(Viewer, SeesNoFurtherThanItsHostAllowsAndSaysSo) {
+  Viewer viewer(kShape, kPlenty, true, 200.0);
+  ASSERT_TRUE(viewer.on_message(view_at(0)));
+  const auto cut_short = viewer.refresh();
+  ASSERT_TRUE(cut_short.accepted);
+  EXPECT_EQ(cut_short.accepted->view.far_m, 200.0);
+  EXPECT_TRUE(cut_short.is_cut_short);
+  ViewMessage nearer = view_at(0, 2);
+  nearer.view.far_m = 200.0;
+  EXPECT_EQ(cut_short.accepted->chunks, area_of(nearer).size());
+  ASSERT_TRUE(viewer.on_message(nearer));
+  EXPECT_FALSE(viewer.refresh().is_cut_short);
+}
+
 }  // namespace
 }  // namespace talus::server
