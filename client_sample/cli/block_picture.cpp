@@ -67,7 +67,9 @@ class Block {
   /// The first rock along a ray, from `begin` voxels on.
   std::optional<glm::dvec3> first_rock(const glm::dvec3& from, const glm::dvec3& direction, double begin,
                                        double end) const {
-    for (double t = begin; t < end; t += kStep) {
+    const int steps = static_cast<int>(std::ceil((end - begin) / kStep));
+    for (int step = 0; step < steps; ++step) {
+      const double t = begin + step * kStep;
       const glm::dvec3 here = from + direction * t;
       if (!holds(here) || density(here) >= 0) continue;
       double low = t - kStep;

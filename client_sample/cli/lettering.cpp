@@ -94,7 +94,8 @@ void draw_scale_bar(Picture& picture, double pixel_m) {
 void draw_height_marks(Picture& picture, double low_m, double high_m) {
   const double interval = round_length((high_m - low_m) / 4);
   const double pixel_m = (high_m - low_m) / picture.height;
-  for (double at = std::ceil(low_m / interval) * interval; at < high_m; at += interval) {
+  for (auto mark = std::lround(std::ceil(low_m / interval)); static_cast<double>(mark) * interval < high_m; ++mark) {
+    const double at = static_cast<double>(mark) * interval;
     const int y = static_cast<int>((high_m - at) / pixel_m);
     fill(picture, picture.width - 13, y - 1, 13, 3, 30);
     fill(picture, picture.width - 12, y, 12, 1, 250);

@@ -84,9 +84,10 @@ void ScanBot::want_next() {
     if (is_valid(key)) keys.push_back(key);
   }
   std::ranges::sort(keys);
-  keys.erase(std::ranges::unique(keys).begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::ranges::shuffle(keys, random_);
   std::vector<protocol::HeldChunk> chunks;
+  chunks.reserve(keys.size());
   for (const ChunkKey& key : keys) chunks.push_back({key, 0});
   mine().count(Tally::kAsked, keys.size());
   ledger_.wanted(keys, stage_.now_s());

@@ -131,6 +131,7 @@ int Scenario::bots() const {
 std::expected<Scenario, std::vector<TextFault>> parse_scenario(std::string_view text, std::string_view file) {
   const std::vector<Key> keys = key_table();
   std::vector<TomlField> fields;
+  fields.reserve(keys.size());
   for (const Key& key : keys) fields.push_back(key.field);
   const auto entries = protocol::read_toml(text, file, fields);
   if (!entries) return std::unexpected(entries.error());

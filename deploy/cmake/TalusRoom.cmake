@@ -14,6 +14,8 @@ function(talus_read_together target)
     endif()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  # Read from within another file, a source looks like a header to the compiler: no type of one should hide a member's.
+  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
 endfunction()
 
 # talus_room(NAME [PUBLIC lib...] [PRIVATE lib...]): one folder of the house becomes one static library of all its *.cpp.
