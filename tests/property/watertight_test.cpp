@@ -2,10 +2,11 @@
 // the outer hull of the view. So is what it may draw while one view gives way to another. Positions are compared bit
 // for bit.
 //
-// TALUS_SEAM_VIEWS=10000 is the long run.
+// TALUS_SEAM_VIEWS=10000 is the long run; TALUS_SEAM_SEED makes another one of it, for another processor.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -17,13 +18,18 @@
 #include "core/mesh/seam_strip.hpp"
 #include "protocol/interest_area.hpp"
 #include "protocol/mesh_codec.hpp"
+#include "protocol/meshopt_codec.hpp"
 #include "tests/support/assembly.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/random_views.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 2004;
+std::uint64_t seed() {
+  const char* asked = std::getenv("TALUS_SEAM_SEED");
+  return asked == nullptr ? 2004 : std::strtoull(asked, nullptr, 10);
+}
 
 /// Small chunks make many faces out of little work.
 Manifest small_chunks() {
@@ -38,6 +44,26 @@ class Wire {
   explicit Wire(const WorldFunction& world) : world_(world) {}
 
   void forget() { columns_.clear(); }
+
+  /// Whether any sphere of that kind carves into what has been loaded of LOD 0.
+  bool has(CarveKind kind) const {
+    return std::ranges::any_of(columns_, [&](const auto& known) {
+      const ColumnBlock& block = known.second;
+      const auto is_inside = [&](double at_m, std::int64_t first, int count) {
+        const double voxel = at_m / world_.voxel_m() - static_cast<double>(first);
+        return voxel >= 0 && voxel < count;
+      };
+      return known.first.lod == 0 && std::ranges::any_of(block.spheres, [&](const CarveSphere& sphere) {
+               return sphere.kind == kind && is_inside(sphere.x_m, block.grid.x_voxel, block.grid.width) &&
+                      is_inside(sphere.z_m, block.grid.z_voxel, block.grid.depth);
+             });
+    });
+  }
+  bool has_shore() const {
+    return std::ranges::any_of(columns_, [](const auto& known) {
+      return known.first.lod == 0 && known.second.height_low_m < 0 && known.second.height_high_m > 0;
+    });
+  }
 
   /// Empty for air and rock.
   ChunkMesh chunk(const ChunkKey& key) {
@@ -71,46 +97,27 @@ class Wire {
     out = known;
   }
 
-  static ChunkMesh over_the_wire(const ChunkMesh& mesh, const protocol::MeshLattice& lattice) {
-    const auto bytes = protocol::encode_draco(mesh, lattice);
+  ChunkMesh over_the_wire(const ChunkMesh& mesh, const protocol::MeshLattice& lattice) {
+    // Either format, by turns.
+    is_meshopt_ = !is_meshopt_;
+    const auto bytes = is_meshopt_ ? protocol::encode_meshopt(mesh, lattice) : protocol::encode_draco(mesh, lattice);
     EXPECT_TRUE(bytes.has_value());
-    auto decoded = protocol::decode_draco(bytes.value(), lattice);
+    auto decoded = protocol::decode_surface(bytes.value(), lattice);
     EXPECT_TRUE(decoded.has_value());
     return decoded ? std::move(*decoded) : ChunkMesh{};
   }
 
   const WorldFunction& world_;
+  bool is_meshopt_ = false;
   ChunkScratch scratch_;
   StripScratch strip_scratch_;
   std::map<ChunkKey, ColumnBlock> columns_;
 };
 
-double height_at(const WorldFunction& world, double x, double z) {
-  ColumnBlock block;
-  world.columns({static_cast<std::int64_t>(x), static_cast<std::int64_t>(z), 1, 1, 1, world.voxel_m()}, block);
-  return static_cast<double>(block.height_m[0]);
-}
-
-/// A view close to the ground: in the mountains, at sea level or anywhere, at the origin or at 10^9 m.
-protocol::View random_view(const WorldFunction& world, testing::Random& random, int number) {
-  const double reach_m = number % 2 == 0 ? 2.0e4 : 1.0e9;
-  protocol::View view;
-  double best = -1.0e9;
-  for (int i = 0; i < 12; ++i) {
-    const double x = std::floor(random.real(-reach_m, reach_m));
-    const double z = std::floor(random.real(-reach_m, reach_m));
-    const double height_m = height_at(world, x, z);
-    const double merit = number % 3 == 0 ? height_m : number % 3 == 1 ? -std::abs(height_m) : 0.0;
-    if (merit <= best) continue;
-    best = merit;
-    view.position = {x + random.unit(), height_m + random.real(-25.0, 60.0), z + random.unit()};
-  }
-  view.near_m = 56.0;
-  view.far_m = random.real(70.0, 130.0);
-  return view;
-}
-
 struct Totals {
+  /// Views around the origin and around 10^9 m with anything of each kind of carving in them, and with the sea's level.
+  std::array<std::array<int, kCarvePasses>, 2> carved{};
+  std::array<int, 2> sea{};
   std::size_t meshes = 0;
   std::size_t strips = 0;
   std::size_t edges = 0;
@@ -227,20 +234,38 @@ class Watertight : public ::testing::Test {
   /// Calls body(number, random, wire) for each of `views`, until one fails.
   template <class Body>
   void for_views(int views, Body body) {
-    testing::Random random(kSeed);
+    testing::Random random(seed());
+    testing::RandomViews places(world_, random);
     Wire wire(world_);
     for (int number = 0; number < views; ++number) {
-      const protocol::View view = random_view(world_, random, number);
-      SCOPED_TRACE(::testing::Message() << "seed " << kSeed << ", view " << number << " from " << view.position.x << ' '
-                                        << view.position.y << ' ' << view.position.z << ", far " << view.far_m);
+      const protocol::View view = places.view(number);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed() << ", view " << number << " from " << view.position.x
+                                        << ' ' << view.position.y << ' ' << view.position.z << ", far " << view.far_m);
       wire.forget();
       body(view, random, wire);
       if (HasFatalFailure()) return;
+      count_ground(wire, testing::RandomViews::is_far(number) ? 1 : 0);
     }
     std::printf("%d views: %zu meshes, %zu strips, %zu edges closed\n", views, totals_.meshes, totals_.strips,
                 totals_.edges / 2);
+    for (const std::size_t far : {0U, 1U}) {
+      const auto& [notches, caves, alcoves, arches] = totals_.carved[far];
+      std::printf(
+          "  around %s: %d with the sea's level, %d with notches, %d with caves, %d with alcoves, %d with arches\n",
+          far == 0 ? "the origin" : "10^9 m", totals_.sea[far], notches, caves, alcoves, arches);
+      EXPECT_GT(totals_.sea[far], views / 10);
+      for (const int count : {notches, caves, alcoves}) EXPECT_GT(count, views / 40);
+      EXPECT_GT(arches, 0);
+    }
     EXPECT_GT(totals_.strips, static_cast<std::size_t>(5 * views)) << "too few strips were needed";
     for (const std::size_t lod : {0U, 1U, 2U}) EXPECT_GT(totals_.lods[lod], views / 4) << "LOD " << lod;
+  }
+
+  void count_ground(const Wire& wire, std::size_t far) {
+    totals_.sea[far] += wire.has_shore() ? 1 : 0;
+    for (std::size_t kind = 0; kind < kCarvePasses; ++kind) {
+      totals_.carved[far][kind] += wire.has(static_cast<CarveKind>(kind)) ? 1 : 0;
+    }
   }
 
   const WorldFunction world_{small_chunks()};
