@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -45,26 +43,6 @@ View read_view(StreamPeer& stream) {
   return out;
 }
 
-/// Strips and chunks with a surface that came until idle.
-struct Closed {
-  std::vector<StripKey> strips;
-  std::map<ChunkKey, unsigned> faces;
-  std::set<ChunkKey> chunks;
-};
-Closed read_closed(StreamPeer& stream) {
-  Closed out;
-  while (auto message = stream.next()) {
-    if (std::holds_alternative<protocol::Idle>(*message)) break;
-    if (const auto* strip = std::get_if<protocol::StripHead>(&*message)) out.strips.push_back(strip->strip);
-    const auto* chunk = std::get_if<ChunkHead>(&*message);
-    if (chunk == nullptr) continue;
-    out.chunks.insert(chunk->key);
-    if (chunk->faces != 0) out.faces[chunk->key] = chunk->faces;
-  }
-  std::sort(out.strips.begin(), out.strips.end());
-  return out;
-}
-
 class StreamSim : public testing::TestWithParam<Carrier> {
  protected:
   StreamPeer connect(RunningServer& server) {
@@ -72,30 +50,6 @@ class StreamSim : public testing::TestWithParam<Carrier> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Carriers, StreamSim, testing::Values(Carrier::kWebSocket, Carrier::kTcp));
-
-TEST_P(StreamSim, SendsExactlyTheStripsThatAViewNeedsToClientsThatKnowThem) {
-  RunningServer server;
-  StreamPeer stream = connect(server);
-  ASSERT_TRUE(stream.open(kPlenty, protocol::kVersionOfStrips));
-  stream.look_from(0, 700);
-  const Closed view = read_closed(stream);
-  std::set<StripKey> needed;
-  for (const auto& [key, faces] : view.faces) {
-    for (const ChunkFace face : kAllChunkFaces) {
-      const ChunkKey across = parent_of(neighbour_of(key, face));
-      if ((faces & bit_of(face)) != 0 && view.chunks.contains(across)) needed.insert({across, opposite(face)});
-    }
-  }
-  EXPECT_GT(needed.size(), 5U);
-  EXPECT_EQ(view.strips, std::vector<StripKey>(needed.begin(), needed.end()));
-
-  StreamPeer old = connect(server);
-  ASSERT_TRUE(old.open(kPlenty));
-  old.look_from(0, 700);
-  const Closed without = read_closed(old);
-  EXPECT_EQ(without.chunks, view.chunks);
-  EXPECT_TRUE(without.strips.empty());
-}
 
 TEST_P(StreamSim, SendsAWholeViewThenIdleThenOnlyWhatChanges) {
   RunningServer server;
