@@ -2,6 +2,7 @@
 // it keeps the payloads of LOD 0 there for `node tests/bench/meshes/decode.mjs FOLDER`.
 #include "tests/bench/meshes/carrier_table.hpp"
 #include "tests/bench/meshes/shape_table.hpp"
+#include "tests/bench/meshes/strip_table.hpp"
 
 int main(int count, char** arguments) {
   using namespace talus;
@@ -15,5 +16,6 @@ int main(int count, char** arguments) {
   const bench::TerrainSample coast = bench::view_from(world, "cliff coast, a view of 2 km", 67499.0, -30379.0, 2000.0);
   bench::print_shapes(coast);
   bench::print_carriers(coast, "");
+  bench::print_strips(world, coast);
   return 0;
 }

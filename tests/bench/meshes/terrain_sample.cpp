@@ -24,7 +24,7 @@ SampleMesh chunk_sample(const WorldFunction& world, const ChunkKey& key, ChunkSc
 }  // namespace
 
 TerrainSample chunks_of_lod(const WorldFunction& world, int lod, int count) {
-  TerrainSample out{"LOD " + std::to_string(lod), 0.0, {}};
+  TerrainSample out{"LOD " + std::to_string(lod), 0.0, {}, {}};
   ChunkScratch scratch;
   for (const ChunkKey& key : surface_chunks(world, lod, count)) {
     SampleMesh made = chunk_sample(world, key, scratch);
@@ -34,7 +34,7 @@ TerrainSample chunks_of_lod(const WorldFunction& world, int lod, int count) {
 }
 
 TerrainSample view_from(const WorldFunction& world, std::string name, double x_m, double z_m, double far_m) {
-  TerrainSample out{std::move(name), std::numbers::pi * far_m * far_m * 1e-6, {}};
+  TerrainSample out{std::move(name), std::numbers::pi * far_m * far_m * 1e-6, {}, {}};
   const protocol::WorldShape shape{world.cells(), world.voxel_m(), world.height_range_m()};
   ColumnBlock column;
   const auto voxel = [&](double m) { return static_cast<std::int64_t>(std::floor(m / world.voxel_m())); };
@@ -66,7 +66,9 @@ TerrainSample view_from(const WorldFunction& world, std::string name, double x_m
   for (const StripKey& strip : strips) {
     SampleMesh made{{}, protocol::strip_lattice(strip.key, world.cells(), world.voxel_m()), strip.key.lod, true};
     build_strip(world, strip.key, strip.face, columns, strip_scratch, made.mesh);
-    if (!made.mesh.indices.empty()) out.meshes.push_back(std::move(made));
+    if (made.mesh.indices.empty()) continue;
+    out.meshes.push_back(std::move(made));
+    out.strips.push_back(strip);
   }
   return out;
 }

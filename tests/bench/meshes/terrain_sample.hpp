@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/grid/chunk_face.hpp"
 #include "core/mesh/chunk_mesh.hpp"
 #include "core/world/world_function.hpp"
 #include "protocol/mesh_codec.hpp"
@@ -21,6 +22,7 @@ struct TerrainSample {
   std::string name;
   double area_km2 = 0.0;  ///< of ground that a view shows; 0 for chunks of one LOD
   std::vector<SampleMesh> meshes;
+  std::vector<StripKey> strips;  ///< of a view: those that have a triangle
 };
 
 /// `count` mountain chunks of one LOD (surface_chunks).
