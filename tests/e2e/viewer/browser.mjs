@@ -25,7 +25,8 @@ const flags = [
   '--no-first-run',
 ];
 
-/// Opens a page. `faults` collects console errors, page errors and failed or refused requests.
+/// Opens a page. `faults` collects console errors, draw calls that WebGL refused, page errors and failed or refused
+/// requests.
 export async function openPage(t, url, viewport) {
   if (!existsSync(program)) throw new Error(`${program} is missing: install chromium or set CHROMIUM`);
   const { chromium } = requireFromViewer('playwright-core');
@@ -34,7 +35,9 @@ export async function openPage(t, url, viewport) {
   const page = await browser.newPage({ viewport });
   const faults = [];
   page.on('console', (message) => {
-    if (message.type() === 'error') faults.push(`console: ${message.text()}`);
+    const isRefusedByGl = /GL_INVALID|WebGL: INVALID/.test(message.text()); // said as a warning
+    const fault = `console: ${message.text()}`;
+    if ((message.type() === 'error' || isRefusedByGl) && !faults.includes(fault)) faults.push(fault);
   });
   page.on('pageerror', (error) => faults.push(`page: ${error.message}`));
   page.on('requestfailed', (request) => faults.push(`request: ${request.url()} ${request.failure()?.errorText}`));

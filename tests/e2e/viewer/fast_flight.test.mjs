@@ -7,12 +7,12 @@ import { builtViewer, openViewer, screenshot, until } from './browser.mjs';
 
 const completeMs = 150_000; // drawn in software on a shared machine
 const speed = 300; // metres a second
-const leg_s = 3;
-/// A flight has as many legs as it takes to see so many frames, but not more than so many.
-const framesWanted = 12;
+const leg_s = 2.5;
+/// A flight has as many legs, there and back, as it takes to see so many frames, but not more than so many.
+const framesWanted = 8;
 const legsMax = 6;
-/// Before the arch at (4820, 39285): through it and the headland behind, along the way one looks, and back again.
-const from = { at: [4845, 24, 39280], yaw: 200, pitch: 2 };
+/// Off a headland with stacks, caves and an arch: past them and through its cliffs, along the way one looks, and back.
+const from = { at: [4914, 30, 39847], yaw: -16, pitch: 2 };
 const radians = (from.yaw * Math.PI) / 180;
 const to = [from.at[0] - Math.sin(radians) * speed * leg_s, 40, from.at[2] - Math.cos(radians) * speed * leg_s];
 
@@ -65,7 +65,7 @@ async function flyAndLook([ends, leg_s, framesWanted, legsMax]) {
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);
-  while (seen.legs < legsMax && (seen.legs < 2 || seen.frames < framesWanted)) {
+  while (seen.legs < legsMax && (seen.legs % 2 === 1 || seen.frames < framesWanted)) {
     await talus.flyAlong(...ends[seen.legs % 2], leg_s);
     seen.legs += 1;
   }
@@ -85,7 +85,6 @@ test('a fast flight through cliffs shows no hole and no gap', { timeout: 600_000
       assert.equal(start.format, format);
       const seen = await viewer.page.evaluate(flyAndLook, [[to, from.at], leg_s, framesWanted, legsMax]);
       t.diagnostic(JSON.stringify(seen));
-      await screenshot(viewer, `fast_flight_${format}`);
       assert.deepEqual(seen.lost, [], 'ground that was drawn above a column goes only when it is replaced');
       assert.deepEqual(seen.open, [], 'chunks and strips are one surface');
       assert.equal(seen.mismatches, 0, 'what is decided to be drawn is in the scene, and nothing else');

@@ -27,8 +27,7 @@ interface ShadowMap {
 export class ShadowMaps {
   readonly uniforms: Record<string, THREE.IUniform>;
   drawCalls = 0;
-  /// False: the sun reaches everywhere. For processors that draw without a GPU, which spend most of a frame here.
-  isOn = true;
+  private isOn = true;
   private readonly maps: ShadowMap[];
   private readonly material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
@@ -51,6 +50,18 @@ export class ShadowMaps {
       uShadowTexel: { value: new THREE.Vector3(...kReach.map((reach) => (2 * reach) / kEdge)) },
       uShadowReversed: { value: reversed ? 1 : 0 },
     };
+  }
+
+  /// The sun reaches everywhere: for machines that draw without a GPU, which spend half of a frame here. Before the first
+  /// frame. The maps are cleared all the same: without depths in them the terrain's shader would be given no shadow
+  /// textures and WebGL would refuse to draw.
+  turnOff(): void {
+    this.isOn = false;
+    for (const { target } of this.maps) {
+      this.renderer.setRenderTarget(target);
+      this.renderer.clear();
+    }
+    this.renderer.setRenderTarget(null);
   }
 
   /// Draws at most one map. `x, y, z`: the camera, world metres; chunks are placed relative to it.

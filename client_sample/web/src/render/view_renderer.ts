@@ -68,8 +68,8 @@ export class ViewRenderer {
   }
 
   /// Before the first frame.
-  setShadows(on: boolean): void {
-    this.shadows.isOn = on;
+  turnShadowsOff(): void {
+    this.shadows.turnOff();
   }
 
   setFar(far: number): void {

@@ -59,7 +59,7 @@ export class Viewer {
     this.body = createBody(at[0], at[1], at[2], radians(place.yaw), radians(place.pitch));
     this.pixelRatio = place.pixelRatio ?? Math.min(devicePixelRatio, 2);
     renderer.setFar(place.farM);
-    renderer.setShadows(place.shadows);
+    if (!place.shadows) renderer.turnShadowsOff();
     renderer.terrain.setPalette(manifest.colours);
     this.input = new Input(canvas, document.getElementById('stick')!, {
       toggleWalk: () => this.toggleWalk(),
