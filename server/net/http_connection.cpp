@@ -49,7 +49,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
         allow_origin_(policy_->origins.allow_field(std::nullopt)),
         writer_(net, channel_),
         answers_(net, executor_) {
-    set_deadline(limits_.silent_s, Count::kSilentTimeout, net.clock.now());
+    set_deadline(limits_.silent_s, Count::kSilentTimeout);
     net_.policy.refresh(present_, present_version_);
   }
 
@@ -69,7 +69,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<void> serve(std::string_view head);
   void next_request(std::size_t head_bytes);
   void begin_request(const HttpRequest& request);
-  bool answer_now(Route& route);
+  bool answer_now(Route& route, Instant now);
   Awaitable<void> refuse(HttpFault fault);
   Awaitable<void> upgrade(const StreamRoute& route, std::string_view head);
   std::optional<HttpAnswer> refuse_upgrade(const HttpRequest& request);
@@ -78,8 +78,8 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<void> send_rest();
   Awaitable<void> linger();
 
-  void set_deadline(double s, Count reason, Instant now) {
-    deadline_ = now + seconds(s);
+  void set_deadline(double s, Count reason) {
+    deadline_ = sweeper().coarse_now() + seconds(s);
     deadline_reason_ = reason;
   }
 
@@ -152,7 +152,7 @@ void HttpConnection::receive(std::size_t bytes) {
     return;
   }
   is_idle_ = false;
-  set_deadline(limits_.head_s, Count::kHeadTimeout, net_.clock.now());
+  set_deadline(limits_.head_s, Count::kHeadTimeout);
   // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
   const std::size_t skipped = bytes >= 2 && input_[0] == '\r' && input_[1] == '\n' ? 2 : 0;
   if (skipped != 0) std::memmove(input_.data(), input_.data() + skipped, bytes - skipped);
@@ -180,10 +180,11 @@ bool HttpConnection::serve_now(std::string_view head) {
                              door_,
                              net_.is_ready.load(std::memory_order_relaxed),
                              &present_->tokens,
-                             net_.clock.unix_seconds()};
+                             sweeper().unix_seconds()};
   route_ = resolve(request, context);
-  net_.metrics.record(Hop::kReadLoop, net_.clock.now() - start);
-  if (!answer_now(route_)) left_ = Left::kMaking;
+  const Instant resolved = net_.clock.now();
+  net_.metrics.record(Hop::kReadLoop, resolved - start);
+  if (!answer_now(route_, resolved)) left_ = Left::kMaking;
   return left_ == Left::kNothing && !has_body_;
 }
 
@@ -204,12 +205,12 @@ void HttpConnection::begin_request(const HttpRequest& request) {
 }
 
 /// False when the answer has to be made.
-bool HttpConnection::answer_now(Route& route) {
+bool HttpConnection::answer_now(Route& route, Instant now) {
   if (auto* at_once = std::get_if<AnswerRoute>(&route)) {
     if (at_once->token_fault) net_.metrics.add(count_of(*at_once->token_fault));
     send(std::move(at_once->answer));
   } else if (const auto* chunk = std::get_if<ChunkRoute>(&route)) {
-    PayloadRef payload = net_.chunks.at_once(chunk->name);
+    PayloadRef payload = net_.chunks.at_once(chunk->name, now);
     if (payload == nullptr) return false;
     net_.metrics.add(Count::kHttpChunkInMemory);
     const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name.format);
@@ -253,8 +254,7 @@ void HttpConnection::next_request(std::size_t head_bytes) {
   scanner_.reset();
   is_idle_ = input_size_ == 0;
   if (is_idle_ && is_draining_) is_serving_ = false;
-  const Count reason = is_idle_ ? Count::kIdleTimeout : Count::kHeadTimeout;
-  set_deadline(is_idle_ ? limits_.idle_s : limits_.head_s, reason, net_.clock.now());
+  is_idle_ ? set_deadline(limits_.idle_s, Count::kIdleTimeout) : set_deadline(limits_.head_s, Count::kHeadTimeout);
 }
 
 Awaitable<void> HttpConnection::refuse(HttpFault fault) {
@@ -345,7 +345,7 @@ Awaitable<void> HttpConnection::send_rest() {
 
 Awaitable<void> HttpConnection::linger() {
   channel_.shutdown_send();
-  set_deadline(kAnswerLingerS, Count::kEnd, net_.clock.now());
+  set_deadline(kAnswerLingerS, Count::kEnd);
   std::array<char, kHeadReadBytes> dropped;
   for (std::size_t total = 0; total < kLingerBytes;) {
     const asio::mutable_buffer into(dropped.data(), dropped.size());

@@ -39,6 +39,13 @@ bool is_token(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), is_token_char);
 }
 
+/// The first of [from, to) that is a control character but a tab, or `to`.
+std::size_t end_of_text(std::string_view bytes, std::size_t from, std::size_t to) {
+  const auto is_text = [](char c) { return (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F) || c == '\t'; };
+  while (from < to && is_text(bytes[from])) ++from;
+  return from;
+}
+
 /// What http_parser reports about one head. A name or value may come in pieces, always of one stretch of bytes.
 struct Reported {
   std::string_view url;
@@ -158,9 +165,14 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 
 std::expected<std::optional<std::size_t>, HttpFault> HeadScanner::scan(std::string_view bytes) {
   for (; scanned_ < bytes.size(); ++scanned_) {
-    const char c = bytes[scanned_];
     const std::size_t limit =
         request_line_end_ == 0 ? limits_->request_line_bytes : request_line_end_ + limits_->head_bytes;
+    // Nearly all of a head is text inside a line, of which nothing but its length is of interest.
+    if (scanned_ != line_start_ && bytes[scanned_ - 1] != '\r') {
+      scanned_ = end_of_text(bytes, scanned_, std::min(bytes.size(), limit));
+      if (scanned_ == bytes.size()) break;
+    }
+    const char c = bytes[scanned_];
     if (scanned_ >= limit) return std::unexpected(request_line_end_ == 0 ? kLongLine : kLongHead);
     const bool follows_cr = scanned_ > 0 && bytes[scanned_ - 1] == '\r';
     if ((c == '\n') != follows_cr) return std::unexpected(kBareLine);

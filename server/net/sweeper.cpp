@@ -23,6 +23,7 @@ Swept::~Swept() {
 }
 
 Sweeper::Sweeper(asio::io_context& context, const Clock& clock) : clock_(clock), timer_(context.get_executor()) {
+  now_ = clock_.now();
   renew_date();
 }
 
@@ -38,8 +39,8 @@ Awaitable<void> Sweeper::run() {
     timer_.expires_after(kSweepEvery);
     co_await timer_.async_wait(kAwait);
     renew_date();
-    const Instant now = clock_.now();
-    each([&](Swept& member) { member.sweep(now); });
+    now_ = clock_.now();
+    each([this](Swept& member) { member.sweep(now_); });
   }
 }
 

@@ -50,6 +50,9 @@ class Sweeper {
 
   /// For the Date field; renewed by the sweep.
   const std::string& http_date() const { return http_date_; }
+  /// Of the last sweep: late by one at most, and free. Deadlines are no finer.
+  Instant coarse_now() const { return now_; }
+  std::int64_t unix_seconds() const { return date_seconds_; }
 
  private:
   friend class Swept;
@@ -62,6 +65,7 @@ class Sweeper {
   std::vector<Swept*> members_;
   std::string http_date_;
   std::int64_t date_seconds_ = -1;
+  Instant now_{};
   bool is_stopped_ = false;
 };
 

@@ -49,12 +49,11 @@ ChunkService::ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& po
     : cache_(cache), stored_(stored), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
 
 ChunkService::Answer ChunkService::request(const PayloadName& name, const Asker& asker, Done done) {
-  if (PayloadRef payload = at_once(name)) return payload;
+  if (PayloadRef payload = at_once(name, clock_.now())) return payload;
   return make(name, asker, std::move(done));
 }
 
-PayloadRef ChunkService::at_once(const PayloadName& name) {
-  const Instant start = clock_.now();
+PayloadRef ChunkService::at_once(const PayloadName& name, Instant start) {
   PayloadRef payload = cache_.load(name);
   const Duration took = clock_.now() - start;
   metrics_.record(Hop::kLoad, took);
