@@ -72,7 +72,8 @@ Json map_json(const WorldFunction& world) {
   return {{"tile_pixels", kMapTilePixels},
           {"zoom_max", kMapZoomMax},
           {"pixel_m", number_json(coarsest * world.voxel_m())},
-          {"tile_limit", limits}};
+          {"tile_limit", limits},
+          {"layers", kMapLayerNames}};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "core/base/hash.hpp"
 #include "core/grid/chunk_face.hpp"
 #include "core/grid/chunk_key.hpp"
+#include "core/map/map_view.hpp"
 #include "core/mesh/chunk_mesh.hpp"
 
 namespace talus::server {
@@ -77,15 +78,17 @@ using PayloadRef = std::shared_ptr<const ChunkPayload>;
 struct PayloadName {
   std::uint32_t world = 0;  ///< index of the world in this server
   PayloadFormat format = PayloadFormat::kDraco;
-  ChunkKey key;                     ///< of a column: y is 0
-  ChunkFace face = ChunkFace::kPx;  ///< of a strip; kPx for other formats
-  glm::dvec3 origin{};              ///< metres; zero where has_origin is false
+  ChunkKey key;                        ///< of a column: y is 0
+  ChunkFace face = ChunkFace::kPx;     ///< of a strip; kPx for other formats
+  MapLayer layer = MapLayer::kShaded;  ///< of a map; kShaded for other formats
+  glm::dvec3 origin{};                 ///< metres; zero where has_origin is false
   friend bool operator==(const PayloadName&, const PayloadName&) = default;
 };
 
 struct PayloadNameHash {
   std::size_t operator()(const PayloadName& name) const noexcept {
-    std::uint64_t h = mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 16) |
+    std::uint64_t h = mix64(ChunkKeyHash{}(name.key), (std::uint64_t{name.world} << 24) |
+                                                          (std::uint64_t{static_cast<std::uint8_t>(name.layer)} << 16) |
                                                           (std::uint64_t{static_cast<std::uint8_t>(name.face)} << 8) |
                                                           static_cast<std::uint8_t>(name.format));
     if (has_origin(name.format)) {

@@ -72,7 +72,7 @@ std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_vi
 
 Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name) {
   if (auto refused = read_revision(request.query)) return std::move(*refused);
-  const std::string& etag = context.worlds[name.world]->etag(name.format);
+  const std::string& etag = context.worlds[name.world]->etag(name);
   if (!names_etag(request.field("if-none-match").value_or(""), etag)) return ChunkRoute{name};
   HttpAnswer answer;
   answer.status = 304;

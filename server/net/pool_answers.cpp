@@ -72,7 +72,7 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
     co_return result.error() == ChunkError::kBusy ? unavailable("busy", "too many chunks are being made: come again")
                                                   : faulty("chunk_failed", "this chunk could not be made");
   }
-  co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name.format), name.format);
+  co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name), name.format);
 }
 
 Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Question question) {

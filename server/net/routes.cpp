@@ -1,6 +1,7 @@
 #include "server/net/routes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -49,6 +50,17 @@ AnswerRoute cacheable_json(const HttpRequest& request, const std::string& body, 
   return {std::move(answer)};
 }
 
+/// What the map is to show: layer=, or the shaded relief.
+std::optional<AnswerRoute> read_layer(std::string_view query, MapLayer& out) {
+  const QueryValue value = query_value(query, "layer");
+  if (value.state == QueryState::kAbsent) return std::nullopt;
+  const auto layer = value.state == QueryState::kPresent ? map_layer(value.value) : std::nullopt;
+  if (!layer)
+    return bad_request("bad_layer", fmt::format("layer: expected one of {}", fmt::join(kMapLayerNames, ", ")));
+  out = *layer;
+  return std::nullopt;
+}
+
 /// zoom, x, y.png.
 Route map_route(const HttpRequest& request, const RouteContext& context, std::size_t world, Segments parts) {
   constexpr std::array<std::string_view, 3> kNames{"zoom", "x", "y"};
@@ -73,6 +85,7 @@ Route map_route(const HttpRequest& request, const RouteContext& context, std::si
   name.world = static_cast<std::uint32_t>(world);
   name.format = PayloadFormat::kMap;
   name.key = {values[0], values[1], 0, values[2]};
+  if (auto refused = read_layer(request.query, name.layer)) return std::move(*refused);
   return payload_route(request, context, name);
 }
 

@@ -19,7 +19,7 @@ static_assert(kKindBits + kChunkFaces <= 8);
 std::optional<std::string> StoredChunks::disk_name(const PayloadName& name) const {
   if (disk_ == nullptr || name.origin != glm::dvec3{}) return std::nullopt;
   const World& world = *worlds_[name.world];
-  return fmt::format("{} {} {} {}/{}/{}/{} {}", world.hash(), generator_version_, world.etag(name.format), name.key.lod,
+  return fmt::format("{} {} {} {}/{}/{}/{} {}", world.hash(), generator_version_, world.etag(name), name.key.lod,
                      name.key.x, name.key.y, name.key.z, static_cast<unsigned>(name.face));
 }
 

@@ -211,7 +211,7 @@ ChunkPayload TerrainBuilder::build_map(const PayloadName& name, const WorldFunct
   const MapView view = map_view({name.key.lod, name.key.x, name.key.z});
   scratch.rgb.resize(std::size_t{3} * kMapTilePixels * kMapTilePixels);
   const Instant start = clock_.now();
-  draw_map(world, view, {}, scratch.map, scratch.rgb);
+  draw_map(world, view, {name.layer, 0}, scratch.map, scratch.rgb);
   const Instant drawn = clock_.now();
   metrics_.record(Hop::kDrawMap, drawn - start);
   ChunkPayload out{ChunkKind::kMesh, protocol::encode_png(view.width, view.height, scratch.rgb)};

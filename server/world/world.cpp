@@ -14,7 +14,7 @@ namespace {
 /// By format; a map's is raised when maps look different.
 constexpr std::array<std::string_view, kPayloadFormats> kEditions{"drc2",  "glb3",  "density1", "height1",  "map1",
                                                                   "seam2", "tile4", "mesh1",    "meshseam1"};
-constexpr std::string_view kManifestEdition = "man1";
+constexpr std::string_view kManifestEdition = "man2";
 constexpr std::string_view kTilesetEdition = "tileset2";
 /// Edits are not kept yet: every chunk is as its world made it.
 constexpr std::string_view kRevision = "0";
@@ -35,6 +35,10 @@ World::World(Manifest manifest)
       etag_manifest_(etag_of(hash_, kManifestEdition)),
       etag_tileset_(etag_of(hash_, kTilesetEdition)) {
   std::ranges::transform(kEditions, etags_.begin(), [&](std::string_view edition) { return etag_of(hash_, edition); });
+  const std::string map_edition(kEditions[static_cast<std::size_t>(PayloadFormat::kMap)]);
+  std::ranges::transform(kMapLayerNames, layer_etags_.begin(), [&](std::string_view layer) {
+    return etag_of(hash_, map_edition + "-" + std::string(layer));
+  });
 }
 
 std::size_t world_index(const Worlds& worlds, std::string_view name) {

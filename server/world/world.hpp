@@ -27,6 +27,10 @@ class World {
   const std::string& manifest_json() const { return manifest_json_; }
   /// Quoted, strong, and known without generating: world hash, revision and format decide every byte of a payload.
   const std::string& etag(PayloadFormat format) const { return etags_[static_cast<std::size_t>(format)]; }
+  /// The same of one payload: every layer of the map has its own.
+  const std::string& etag(const PayloadName& name) const {
+    return name.layer == MapLayer::kShaded ? etag(name.format) : layer_etags_[static_cast<std::size_t>(name.layer)];
+  }
   /// Quoted: of the manifest's body.
   const std::string& manifest_etag() const { return etag_manifest_; }
   /// Quoted: of everything that describes the world's tiles.
@@ -38,6 +42,7 @@ class World {
   protocol::WorldShape shape_;
   std::string manifest_json_;
   std::array<std::string, kPayloadFormats> etags_;
+  std::array<std::string, kMapLayerNames.size()> layer_etags_;  ///< of maps
   std::string etag_manifest_;
   std::string etag_tileset_;
 };

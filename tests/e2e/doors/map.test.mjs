@@ -54,6 +54,28 @@ describe('map tiles', () => {
     assert.equal(seen.size, map.zoom_max + 1);
   });
 
+  test('show every layer of the manifest, each another picture with another ETag', async () => {
+    const pictures = new Set();
+    const etags = new Set();
+    for (const layer of map.layers) {
+      const answer = await request(http, `${tilePath(5, 0, 0)}?layer=${layer}`);
+      assert.equal(answer.status, 200, layer);
+      assert.deepEqual(pixelsOf(answer.body), { width: 256, height: 256 });
+      pictures.add(createHash('sha256').update(answer.body).digest('hex'));
+      etags.add(answer.headers.etag);
+      const again = await request(http, `${tilePath(5, 0, 0)}?layer=${layer}`, { headers: { 'If-None-Match': answer.headers.etag } });
+      assert.equal(again.status, 304, layer);
+    }
+    assert.ok(map.layers.includes('plates') && map.layers.includes('districts'));
+    assert.equal(pictures.size, map.layers.length);
+    assert.equal(etags.size, map.layers.length);
+    const plain = await request(http, tilePath(5, 0, 0));
+    assert.ok(etags.has(plain.headers.etag), 'no layer is the shaded one');
+    const bad = await request(http, `${tilePath(5, 0, 0)}?layer=snow`);
+    assert.equal(bad.status, 400);
+    assert.equal(JSON.parse(bad.body.toString()).error, 'bad_layer');
+  });
+
   test('answer 304 to their ETag without being drawn, and HEAD without a body', async () => {
     const { headers } = await request(http, tilePath(3, 0, 0));
     const unseen = await request(http, tilePath(3, 77, -12), { headers: { 'If-None-Match': headers.etag } });

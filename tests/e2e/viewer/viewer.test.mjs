@@ -137,6 +137,12 @@ test('the map fills with tiles, and a click on it travels there', { timeout: 400
   const middle = await middleOfScreen(page);
   assert.ok(middle.spread > 4, `the map shows something: ${JSON.stringify(middle)}`);
 
+  await page.locator('#map-layer').selectOption('plates');
+  await mapIs('every tile of the plates has come', (map) => map.layer === 'plates' && map.missing === 0);
+  await page.keyboard.press('l');
+  await mapIs('the key goes on to the faults', (map) => map.layer === 'faults' && map.missing === 0);
+  await page.locator('#map-layer').selectOption('shaded');
+
   await page.locator('#map-closer').click();
   await mapIs('every tile of the closer view has come', (map) => map.missing === 0);
   const [x, , z] = (await viewer.state()).at;

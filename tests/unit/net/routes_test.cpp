@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -59,6 +60,29 @@ TEST_F(Routes, ReadAMapTile) {
   ASSERT_NE(tile, nullptr);
   EXPECT_EQ(tile->name.format, PayloadFormat::kMap);
   EXPECT_EQ(tile->name.key, (ChunkKey{5, -4, 0, 7}));
+}
+
+TEST_F(Routes, ReadTheLayerOfAMapTileAndGiveEachAnETagOfItsOwn) {
+  const World& world = *(*worlds_)[0];
+  std::set<std::string> etags;
+  for (std::size_t n = 0; n < kMapLayerNames.size(); ++n) {
+    const std::string layer = "layer=" + std::string(kMapLayerNames[n]);
+    const Route route = resolve_target("/v1/worlds/default/map/5/-4/7.png", layer);
+    const auto* tile = std::get_if<ChunkRoute>(&route);
+    ASSERT_NE(tile, nullptr) << layer;
+    EXPECT_EQ(tile->name.layer, static_cast<MapLayer>(n));
+    etags.insert(world.etag(tile->name));
+  }
+  EXPECT_EQ(etags.size(), kMapLayerNames.size());
+  EXPECT_TRUE(etags.contains(world.etag(PayloadFormat::kMap))) << "without a layer it is the shaded one";
+  for (const char* bad : {"layer=", "layer=Plates", "layer=plates&layer=plates", "layer=%zz", "layer=snow"}) {
+    const Route route = resolve_target("/v1/worlds/default/map/5/-4/7.png", bad);
+    const auto* answer = std::get_if<AnswerRoute>(&route);
+    ASSERT_NE(answer, nullptr) << bad;
+    EXPECT_EQ(answer->answer.status, 400) << bad;
+    EXPECT_NE(answer->answer.text.find("bad_layer"), std::string::npos);
+    EXPECT_NE(answer->answer.text.find("districts"), std::string::npos) << "the words that there are";
+  }
 }
 
 TEST_F(Routes, ReadTheOtherFormatsOfChunksAndColumns) {

@@ -9,6 +9,7 @@ export interface MapScheme {
   zoomMax: number;
   pixelM: number; // metres a pixel at zoom 0; halved by every zoom
   tileLimit: readonly number[]; // by zoom: coordinates are -limit .. limit - 1
+  layers: readonly string[]; // what a tile can show, the first of them by itself
 }
 
 /// What is known of a place, for people.
@@ -54,11 +55,13 @@ function mapOf(manifest: unknown): MapScheme | null {
   const map = field(manifest, 'map');
   const limit = field(map, 'tile_limit');
   if (!Array.isArray(limit) || !limit.every(Number.isInteger)) return null;
+  const layers = field(map, 'layers');
   return {
     tilePixels: finite(field(map, 'tile_pixels'), 'map.tile_pixels'),
     zoomMax: finite(field(map, 'zoom_max'), 'map.zoom_max'),
     pixelM: finite(field(map, 'pixel_m'), 'map.pixel_m'),
     tileLimit: limit as number[],
+    layers: Array.isArray(layers) ? layers.filter((layer): layer is string => typeof layer === 'string') : [],
   };
 }
 
@@ -95,8 +98,14 @@ export async function fetchSpawn(base: URL, world: string, x: number, z: number)
   }
 }
 
-export async function fetchMapTile(base: URL, world: string, zoom: number, x: number, y: number, signal: AbortSignal): Promise<ImageBitmap> {
-  const response = await fetch(new URL(`v1/worlds/${encodeURIComponent(world)}/map/${zoom}/${x}/${y}.png`, base), {
+/// The shaded relief goes without a word, so that it is one name for every cache.
+export function mapTileUrl(base: URL, world: string, layer: string, zoom: number, x: number, y: number): URL {
+  const query = layer === 'shaded' ? '' : `?layer=${encodeURIComponent(layer)}`;
+  return new URL(`v1/worlds/${encodeURIComponent(world)}/map/${zoom}/${x}/${y}.png${query}`, base);
+}
+
+export async function fetchMapTile(url: URL, signal: AbortSignal): Promise<ImageBitmap> {
+  const response = await fetch(url, {
     headers: authorization(pageToken),
     signal,
   });

@@ -3,6 +3,7 @@
 
 import type { GroundFacts, MapScheme } from '../protocol/server_info';
 import { type MapFrame, panned, roundLength, tilesOf, toScreen, toWorld, zoomed, zoomOf } from './map_frame';
+import { MapLayers } from './map_layers';
 import { MapTiles, type TileSource } from './map_tiles';
 
 const kFirstScale = 40; // metres a pixel: 40 km on a small screen
@@ -43,6 +44,7 @@ export class OverviewMap {
   private readonly canvas = element<HTMLCanvasElement>('map-canvas');
   private readonly facts = element('map-facts');
   private readonly tiles: MapTiles;
+  private readonly layers: MapLayers;
   private frame: MapFrame = { x: 0, z: 0, scale: kFirstScale, width: 1, height: 1 };
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private moved = 0; // pixels since the first finger came down
@@ -56,6 +58,7 @@ export class OverviewMap {
     private readonly actions: MapActions,
   ) {
     this.tiles = new MapTiles(source, () => this.redraw());
+    this.layers = new MapLayers(element<HTMLSelectElement>('map-layer'), scheme.layers, (layer) => this.show(layer));
     element('map-open').hidden = false;
     element('map-open').addEventListener('click', () => this.toggle());
     element('map-close').addEventListener('click', () => this.toggle());
@@ -91,6 +94,17 @@ export class OverviewMap {
     this.canvas.focus();
   }
 
+  get layer(): string {
+    return this.tiles.layer;
+  }
+
+  private show(layer: string): void {
+    this.tiles.layer = layer;
+    this.missing = Infinity;
+    this.canvas.focus();
+    this.redraw();
+  }
+
   /// The visitor has moved.
   refresh(): void {
     if (this.isOpen) this.redraw();
@@ -120,6 +134,11 @@ export class OverviewMap {
 
   private keyDown(event: KeyboardEvent): void {
     if (!this.isOpen || event.ctrlKey || event.metaKey || event.altKey) return;
+    // The list of layers has keys of its own.
+    if (event.target instanceof HTMLSelectElement && event.code !== 'Escape') {
+      event.stopPropagation();
+      return;
+    }
     const pans: Record<string, [number, number]> = {
       ...{ ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] },
       ...{ KeyA: [1, 0], KeyD: [-1, 0], KeyW: [0, 1], KeyS: [0, -1] },
@@ -130,6 +149,7 @@ export class OverviewMap {
     else if (event.key === '+' || event.key === '=') this.zoom(kKeyStep);
     else if (event.key === '-') this.zoom(1 / kKeyStep);
     else if (event.code === 'Home') this.centre();
+    else if (event.code === 'KeyL') this.layers.next();
     else if (event.code === 'Enter' && document.activeElement === this.canvas) this.travel(this.frame.width / 2, this.frame.height / 2);
     else return;
     event.preventDefault();

@@ -14,8 +14,8 @@ export interface TestDoor {
   ground(x: number, z: number): number | null;
   /// Edges on faces of what is drawn at this moment, and the places, in metres, of those that do not close.
   openEdges(): { edges: number; open: [number, number, number][] };
-  /// Whether the map is open, and how many tiles of its view have not come (null: it has not been drawn).
-  map(): { open: boolean; missing: number | null };
+  /// Whether the map is open, how many tiles of its view have not come (null: it has not been drawn), and its layer.
+  map(): { open: boolean; missing: number | null; layer: string };
 }
 
 export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
@@ -47,8 +47,12 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
     },
     overlay: (wire, seams) => renderer.terrain.setOverlay(wire, seams),
     pick: (right, up) => stream.pick(body, renderer.rayThrough(right, up)),
-    map: () => ({ open: viewer.map?.isOpen ?? false, missing: Number.isFinite(viewer.map?.missing) ? viewer.map!.missing : null }),
     openEdges: () => stream.openEdges(),
+    map: () => ({
+      open: viewer.map?.isOpen ?? false,
+      missing: Number.isFinite(viewer.map?.missing) ? viewer.map!.missing : null,
+      layer: viewer.map?.layer ?? '',
+    }),
     ground: (x, z) => viewer.ground(x, z, Infinity)?.heightM ?? null,
   };
 }

@@ -2,7 +2,7 @@
 
 import type { ConnectionState } from '../protocol/connection';
 import { RefusedReason } from '../protocol/message';
-import { fetchGround, fetchHit, fetchMapTile, type WorldManifest } from '../protocol/server_info';
+import { fetchGround, fetchHit, fetchMapTile, type WorldManifest, mapTileUrl } from '../protocol/server_info';
 import { ChunkMesh } from '../render/terrain_layer';
 import type { ViewRenderer } from '../render/view_renderer';
 import { WorldStream } from '../world/world_stream';
@@ -93,7 +93,7 @@ export class Viewer {
     if (manifest.map === null) return null;
     const { name } = manifest;
     const ask = (x: number, z: number, signal: AbortSignal) => fetchGround(base, name, x, z, signal);
-    return new OverviewMap(manifest.map, (zoom, x, y, signal) => fetchMapTile(base, name, zoom, x, y, signal), {
+    return new OverviewMap(manifest.map, (layer, zoom, x, y, signal) => fetchMapTile(mapTileUrl(base, name, layer, zoom, x, y), signal), {
       visitor: () => this.body,
       ask,
       opened: () => this.input.release(),

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { type MapFrame, panned, roundLength, tilesOf, toScreen, toWorld, zoomed, zoomOf } from '../../src/ui/map_frame';
 
-const scheme = { tilePixels: 256, zoomMax: 11, pixelM: 2048, tileLimit: Array.from({ length: 12 }, (_, zoom) => 2 ** (16 + zoom)) };
+const scheme = { tilePixels: 256, zoomMax: 11, pixelM: 2048, tileLimit: Array.from({ length: 12 }, (_, zoom) => 2 ** (16 + zoom)), layers: ['shaded'] };
 const frame: MapFrame = { x: 1e9 + 0.5, z: -350, scale: 12.5, width: 900, height: 500 };
 
 test('a place on the screen and back', () => {

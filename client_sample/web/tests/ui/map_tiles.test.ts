@@ -16,9 +16,9 @@ beforeEach(() => {
   vi.useFakeTimers();
   questions = [];
   tiles = new MapTiles(
-    (zoom, x, y, signal) =>
+    (layer, zoom, x, y, signal) =>
       new Promise((answer, fail) => {
-        questions.push({ key: `${zoom}/${x}/${y}`, signal, answer, fail: () => fail(new Error('busy')) });
+        questions.push({ key: `${layer === 'shaded' ? '' : `${layer}/`}${zoom}/${x}/${y}`, signal, answer, fail: () => fail(new Error('busy')) });
       }),
     () => undefined,
   );
@@ -65,4 +65,18 @@ test('keeps a bounded number of tiles, those last used', async () => {
   expect(tiles.find(5, 0, 1)).toBe(image);
   expect(tiles.find(5, 1, 1)).toBeNull();
   expect(tiles.find(5, 299, 1)).toBe(image);
+});
+
+test('another layer is asked for anew, and the one before is still there', async () => {
+  tiles.want(3, row(2));
+  questions.forEach((q) => q.answer(image));
+  await vi.advanceTimersByTimeAsync(1);
+  tiles.layer = 'plates';
+  expect(tiles.find(3, 0, 0)).toBeNull();
+  expect(tiles.want(3, row(2))).toBe(2);
+  expect(questions.slice(2).map((q) => q.key)).toEqual(['plates/3/0/0', 'plates/3/1/0']);
+  tiles.layer = 'shaded';
+  expect(tiles.want(3, row(2))).toBe(0);
+  expect(questions.slice(2).every((q) => q.signal.aborted)).toBe(true);
+  expect(tiles.find(3, 1, 0)).toBe(image);
 });
