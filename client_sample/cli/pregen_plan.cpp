@@ -24,7 +24,7 @@ std::uint64_t PregenPlan::Square::columns() const {
 PregenPlan::PregenPlan(const protocol::WorldShape& shape, glm::dvec2 centre, double edge_m, int lod_low, int lod_high)
     : shape_(shape) {
   for (int lod = lod_high; lod >= lod_low; --lod) {
-    const double chunk_m = std::ldexp(shape.cells * shape.voxel_m, lod);
+    const double chunk_m = protocol::edge_of(shape, lod);
     const double half = edge_m / 2;
     // The far border itself belongs to the next column.
     const auto last = [&](double high) { return std::nextafter(high, -HUGE_VAL); };
