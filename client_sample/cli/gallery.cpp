@@ -23,6 +23,7 @@ struct Frame {
   std::string label;
   std::variant<MapArea, BlockView> view;
   Manifest manifest;
+  MapLayer layer = MapLayer::kShaded;  ///< of a square from above
 };
 
 struct Exhibit {
@@ -34,13 +35,14 @@ struct Exhibit {
 /// A high range of the default world, and one flank of it; a headland with arches, and the foot of a cliff.
 constexpr MapArea kRange{{78'000, -57'000}, 6000};
 constexpr MapArea kFlank{{79'500, -58'500}, 2500};
-constexpr MapArea kBenches{{77'300, -57'000}, 1800};
+/// A bare flank whose beds one can count.
+constexpr MapArea kBenches{{77'300, -57'000}, 700};
 constexpr BlockView kHeadland{{4845, 24, 39'280}, 200, -12, 110};
 
 using Settings = std::vector<std::pair<std::string_view, double>>;
 
 Frame frame_of(std::string label, const std::variant<MapArea, BlockView>& view, const Settings& settings) {
-  Frame out{std::move(label), view, {}};
+  Frame out{std::move(label), view, {}, MapLayer::kShaded};
   // Snow is put away: it hides forms.
   out.manifest.values[parameter_index("cover.snow_line_m")] = 4500;
   out.manifest.values[parameter_index("cover.grass_line_m")] = 1500;
@@ -69,6 +71,8 @@ Exhibit differential_erosion() {
   out.frames.push_back(frame_of("0", kBenches, {{"strata.resistance", 0}, {"strata.ledge", 0}}));
   out.frames.push_back(frame_of("1", kBenches, {{"strata.ledge", 0}}));
   out.frames.push_back(frame_of("2", kBenches, {}));
+  // Colours of beds would hide their forms.
+  for (Frame& frame : out.frames) frame.layer = MapLayer::kSlope;
   return out;
 }
 
@@ -124,7 +128,7 @@ std::optional<Exhibit> presets(const std::string& folder) {
 Picture draw_frame(const Frame& frame, int size) {
   const WorldFunction world(frame.manifest);
   if (const auto* cliff = std::get_if<BlockView>(&frame.view)) return draw_block(world, *cliff, size, size);
-  return draw_picture(world, std::get<MapArea>(frame.view), size, {});
+  return draw_picture(world, std::get<MapArea>(frame.view), size, {frame.layer, 0});
 }
 
 constexpr int kGap = 6;
