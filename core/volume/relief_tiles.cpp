@@ -60,7 +60,10 @@ const ReliefTile& Relief::tile(std::vector<ReliefTile>& slots, std::int64_t wind
   if (!found.known || found.name != name) {
     found.known = false;
     found.name = name;
-    fill(found, node_m);
+    if (memory_.others == nullptr || !memory_.others->load(node_m, found)) {
+      fill(found, node_m);
+      if (memory_.others != nullptr) memory_.others->store(node_m, found);
+    }
     found.known = true;
   }
   return found;

@@ -92,6 +92,8 @@ enum class Count : std::uint8_t {
   kDiskFault,
   kColumnsRemembered,
   kColumnsEvaluated,
+  kTilesRemembered,
+  kTilesEvaluated,
   kHeightsRemembered,
   kHeightsUnknown,
   kQueryShed,

@@ -42,7 +42,9 @@ protocol::MeshLattice tile_lattice(const ChunkKey& key, const WorldFunction& wor
 }  // namespace
 
 TerrainBuilder::TerrainBuilder(const Worlds& worlds, const Clock& clock, Metrics& metrics, std::size_t threads)
-    : worlds_(worlds), clock_(clock), metrics_(metrics), scratch_(threads), columns_(kColumnBlocks) {}
+    : worlds_(worlds), clock_(clock), metrics_(metrics), tiles_(metrics), scratch_(threads), columns_(kColumnBlocks) {
+  for (Scratch& scratch : scratch_) scratch.build.volume.relief.others = &tiles_;
+}
 
 std::optional<RuledOut> TerrainBuilder::ruled_out(const PayloadName& name) const {
   if (!is_of_chunk(name.format)) return std::nullopt;
@@ -123,7 +125,7 @@ void TerrainBuilder::sample_tile(const PayloadName& name, const WorldFunction& w
   scratch.chunks.clear();
   scratch.tile.clear();
   const glm::dvec2 range = world.height_range_m();
-  const double edge_m = box_of(name.key, world.cells(), world.voxel_m()).high.y;
+  const double edge_m = protocol::edge_of(worlds_[name.world]->shape(), name.key.lod);
   const auto first = static_cast<std::int32_t>(std::floor(range.x / edge_m));
   const auto last = static_cast<std::int32_t>(std::floor(range.y / edge_m));
   PayloadName chunk = name;

@@ -16,6 +16,7 @@
 #include "server/world/chunk_builder.hpp"
 #include "server/world/cost_model.hpp"
 #include "server/world/footprint_memo.hpp"
+#include "server/world/tile_memo.hpp"
 #include "server/world/world.hpp"
 
 namespace talus::server {
@@ -74,6 +75,7 @@ class TerrainBuilder final : public ChunkBuilder {
   const Worlds& worlds_;
   const Clock& clock_;
   Metrics& metrics_;
+  TileMemo tiles_;
   std::vector<Scratch> scratch_;
   FootprintMemo footprints_;
   ColumnMemo columns_;
