@@ -55,7 +55,7 @@ void AnswerWriter::end() {
   // What is no longer cached must not stay with a connection that is idle.
   answer_.payload = nullptr;
   answer_.file = nullptr;
-  answer_.text.clear();
+  answer_.text = std::string();
 }
 
 }  // namespace talus::server

@@ -20,7 +20,7 @@ constexpr HttpFault kManyFields{431, "head_too_large", "too many header fields"}
 constexpr HttpFault kGrammar{400, "malformed_request", "not an HTTP/1.1 request"};
 constexpr HttpFault kVersion{400, "malformed_request", "the version must be HTTP/1.1 or HTTP/1.0"};
 constexpr HttpFault kFieldName{400, "malformed_request", "a header name is not a token directly before its colon"};
-constexpr HttpFault kHost{400, "malformed_request", "exactly one Host field is needed"};
+constexpr HttpFault kHost{400, "malformed_request", "exactly one Host field is needed, of a host and perhaps a port"};
 constexpr HttpFault kTarget{400, "malformed_request", "the request target is not a path"};
 constexpr HttpFault kLengths{400, "malformed_request", "Content-Length is not one whole number"};
 constexpr HttpFault kBothLengths{400, "malformed_request", "Content-Length and Transfer-Encoding together"};
@@ -141,7 +141,11 @@ std::optional<HttpFault> check_fields(HttpRequest& request, unsigned minor, cons
   for (std::size_t i = 0; i < request.field_count; ++i) {
     const HttpField& field = request.fields[i];
     if (!is_token(field.name)) return kFieldName;
-    if (equal_ignoring_case(field.name, "host")) ++hosts;
+    if (equal_ignoring_case(field.name, "host")) {
+      // Of host and port nothing else can be part; what another server would make of it is not known.
+      if (field.value.find_first_of(" \t/?#@\\\"") != std::string_view::npos) return kHost;
+      ++hosts;
+    }
     if (equal_ignoring_case(field.name, "transfer-encoding")) has_coding = true;
     if (!equal_ignoring_case(field.name, "content-length")) continue;
     std::uint64_t value = 0;

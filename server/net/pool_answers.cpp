@@ -77,22 +77,28 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
 
 Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Question question) {
   const std::uint64_t asked = ++asked_;
-  JobPool::Work work = [this, owner = owner_.lock(), asked, question = std::move(question),
+  // Weak: a job that hangs must not keep a connection, nor with it the end of the server; and a job that is the last to
+  // know one must not end it on a thread that is not its own.
+  JobPool::Work work = [this, weak = owner_, asked, question = std::move(question),
                         &of = *net_.worlds[world]](const JobPool::Context& context) mutable {
     HttpAnswer answer;
+    bool has_failed = false;
     try {
-      answer = context.is_displaced ? unavailable("busy", "too many questions at once: come again") : question(of);
+      if (!context.is_displaced) answer = question(of);
     } catch (const std::exception& fault) {
       log(LogLevel::kError, "query failed", {{"fault", std::string_view(fault.what())}});
-      answer = faulty("query_failed", "this question could not be answered");
+      has_failed = true;
     }
+    std::shared_ptr<void> owner = weak.lock();
+    if (owner == nullptr) return;
+    if (context.is_displaced) answer = unavailable("busy", "too many questions at once: come again");
+    if (has_failed) answer = faulty("query_failed", "this question could not be answered");
     asio::post(executor_, [this, owner = std::move(owner), asked, answer = std::move(answer)]() mutable {
       if (asked != asked_ || !waiting_since_) return;
       query_result_ = std::move(answer);
       bell_.ring();
     });
   };
-  // Weak: a job may outlive whoever asked, and must not be the one that ends it, on a thread that is not its own.
   JobPool::OnHang on_hang = [this, weak = owner_, asked] {
     std::shared_ptr<void> owner = weak.lock();
     if (owner == nullptr) return;
