@@ -50,13 +50,18 @@ export class ShadowMaps {
       uShadowTexel: { value: new THREE.Vector3(...kReach.map((reach) => (2 * reach) / kEdge)) },
       uShadowReversed: { value: reversed ? 1 : 0 },
     };
+    this.clear();
   }
 
   /// The sun reaches everywhere: for machines that draw without a GPU, which spend half of a frame here. Before the first
-  /// frame. The maps are cleared all the same: without depths in them the terrain's shader would be given no shadow
-  /// textures and WebGL would refuse to draw.
+  /// frame.
   turnOff(): void {
     this.isOn = false;
+  }
+
+  /// Until a map has been drawn: without depths in them the terrain's shader would be given no shadow textures, and
+  /// WebGL would refuse to draw.
+  private clear(): void {
     for (const { target } of this.maps) {
       this.renderer.setRenderTarget(target);
       this.renderer.clear();
