@@ -12,6 +12,7 @@
 #include "core/landforms/detail.hpp"
 #include "core/noise/gradient_noise.hpp"
 #include "core/plates/macro_field.hpp"
+#include "core/strata/layer_search.hpp"
 #include "core/world/world_function.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/unit/erosion/filter_reference.hpp"
@@ -182,6 +183,22 @@ void FieldPlate(benchmark::State& state) {
   for (auto _ : state) builder.build(sites[next++ % sites.size()].key, plate);
 }
 
+/// The layers of 97x97 points anywhere in a stack of 2048.
+void FieldLayers(benchmark::State& state) {
+  const LayerSearch search{LayerSet(1)};
+  std::vector<float> depths_m(97 * 97);
+  for (std::size_t n = 0; n < depths_m.size(); ++n) {
+    const auto spread = static_cast<float>(n * 7919 % depths_m.size()) / static_cast<float>(depths_m.size());
+    depths_m[n] = spread * kStackDepth;
+  }
+  std::vector<std::int32_t> layers(depths_m.size());
+  for (auto _ : state) {
+    search.find(depths_m, layers);
+    benchmark::ClobberMemory();
+  }
+  count_points(state, static_cast<double>(depths_m.size()));
+}
+
 BENCHMARK(FieldMacro)->Arg(1)->Arg(32)->Arg(4096)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldPlate)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldErosion)->Arg(5)->Arg(7)->Unit(benchmark::kMicrosecond);
@@ -191,6 +208,7 @@ BENCHMARK(FieldCoast)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldDetail)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldCones)->Unit(benchmark::kMicrosecond);
 BENCHMARK(FieldColumnsTile)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FieldLayers)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace talus::bench

@@ -1,8 +1,6 @@
 // Chunks that cannot be made: by a job that throws, and by one that never comes back.
 #include <gtest/gtest.h>
 
-#include <condition_variable>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -10,6 +8,7 @@
 #include "server/observe/log.hpp"
 #include "tests/sim/made_up_server.hpp"
 #include "tests/sim/stream_peer.hpp"
+#include "tests/support/gate.hpp"
 
 namespace talus::server {
 namespace {
@@ -22,20 +21,13 @@ class FaultyBuilder final : public ChunkBuilder {
  public:
   std::optional<ChunkPayload> build(const PayloadName& name, std::size_t, const CancelToken&) override {
     if (name.key == kThrows) throw std::runtime_error("as the test wants it");
-    std::unique_lock lock(mutex_);
-    if (name.key == kHangs) changed_.wait(lock, [&] { return is_open_; });
+    if (name.key == kHangs) gate_.wait();
     return ChunkPayload{ChunkKind::kAir, {}};
   }
-  void open() {
-    const std::lock_guard lock(mutex_);
-    is_open_ = true;
-    changed_.notify_all();
-  }
+  void open() { gate_.open(); }
 
  private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_open_ = false;
+  test::Gate gate_;
 };
 
 class FailureSim : public testing::Test {

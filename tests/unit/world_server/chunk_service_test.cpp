@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/observe/log.hpp"
+#include "tests/support/gate.hpp"
 
 namespace talus::server {
 namespace {
@@ -63,20 +64,13 @@ const PayloadName kStubborn = name_of(5);
 class StubbornBuilder final : public ChunkBuilder {
  public:
   std::optional<ChunkPayload> build(const PayloadName& name, std::size_t, const CancelToken&) override {
-    std::unique_lock lock(mutex_);
-    if (name == kStubborn) changed_.wait(lock, [&] { return is_open_; });
+    if (name == kStubborn) gate_.wait();
     return ChunkPayload{ChunkKind::kMesh, std::vector<std::byte>(10)};
   }
-  void open() {
-    const std::lock_guard lock(mutex_);
-    is_open_ = true;
-    changed_.notify_all();
-  }
+  void open() { gate_.open(); }
 
  private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_open_ = false;
+  test::Gate gate_;
 };
 
 struct Bench {
