@@ -1,4 +1,5 @@
-// Parameters of a world: the lattice, plates, and the large forms along their faults. Name, unit, limits, default, whole numbers only, meaning.
+// Parameters of a world: the lattice, plates, and the large forms along their faults.
+// Name, unit, limits, default, whole numbers only, meaning.
 #pragma once
 
 #include <array>

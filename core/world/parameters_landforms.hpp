@@ -1,4 +1,5 @@
-// Parameters of a world: hills, gullies, rock layers, cones, coasts, districts. Name, unit, limits, default, whole numbers only, meaning.
+// Parameters of a world: hills, gullies, rock layers, cones, coasts, districts.
+// Name, unit, limits, default, whole numbers only, meaning.
 #pragma once
 
 #include <array>
