@@ -36,6 +36,7 @@ export function testDoor(viewer: Viewer, renderer: ViewRenderer): TestDoor {
       shown: renderer.terrain.shown,
       frame_ms: viewer.frame_ms,
       at: [body.x, body.y, body.z],
+      yaw: body.yaw,
       areaFrom: stream.areaFrom && [stream.areaFrom.x, stream.areaFrom.y, stream.areaFrom.z],
       walking: body.walking,
     }),
