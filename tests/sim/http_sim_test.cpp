@@ -22,6 +22,16 @@ std::string surface_chunk(const std::string& http, int lod, int x, int z) {
   return {};
 }
 
+/// A peer for each of `count` chunks that nobody has asked for, with its request sent.
+std::vector<Peer> ask_for_cold_chunks(const std::string& http, std::size_t count) {
+  std::vector<Peer> peers;
+  for (std::size_t i = 0; i < count; ++i) peers.emplace_back(http);
+  for (std::size_t i = 0; i < count; ++i) {
+    peers[i].send(get_request("/v1/worlds/default/chunks/6/" + std::to_string(i * 100) + "/0/0.drc"));
+  }
+  return peers;
+}
+
 TEST(HttpSim, AnswersEveryDoorOfAFreshServer) {
   RunningServer server;
   const std::string http = server->http_address();
@@ -212,11 +222,7 @@ TEST(HttpSim, LetsOneClientHaveOnlySoMuchWaiting) {
   settings.threads = 1;
   settings.cold_per_client = 2;
   RunningServer server(settings);
-  std::vector<Peer> peers;
-  for (int i = 0; i < 30; ++i) peers.emplace_back(server->http_address());
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    peers[i].send(get_request("/v1/worlds/default/chunks/6/" + std::to_string(i * 100) + "/0/0.drc"));
-  }
+  std::vector<Peer> peers = ask_for_cold_chunks(server->http_address(), 30);
   std::uint64_t refused = 0;
   for (Peer& peer : peers) refused += read_response(peer).status == 503 ? 1U : 0U;
   EXPECT_GT(refused, 0U);
@@ -263,11 +269,7 @@ TEST(HttpSim, ShedsColdWorkBeyondItsQueueAndSaysWhenToComeAgain) {
   settings.threads = 1;
   settings.cold_queue = 2;
   RunningServer server(settings);
-  std::vector<Peer> peers;
-  for (int i = 0; i < 40; ++i) peers.emplace_back(server->http_address());
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    peers[i].send(get_request("/v1/worlds/default/chunks/6/" + std::to_string(i * 100) + "/0/0.drc"));
-  }
+  std::vector<Peer> peers = ask_for_cold_chunks(server->http_address(), 40);
   int shed = 0;
   for (Peer& peer : peers) {
     const Response response = read_response(peer);

@@ -32,6 +32,15 @@ class WorldViewerTest : public testing::Test {
     const ChunkKind kind = payload.empty() ? ChunkKind::kAir : ChunkKind::kMesh;
     server.say(protocol::ChunkHead{key, 0, kind, static_cast<std::uint32_t>(payload.size()), faces}, payload);
   }
+  /// The connection is lost once `surface` is held, and the next one's hello has come.
+  bool comes_back_holding(const ChunkKey& key, const Bytes& surface) {
+    say_chunk(key, surface);
+    const bool is_held = run_until(loop, [this] { return viewer->held() == 1; });
+    server.hang_up();
+    const bool is_lost = run_until(loop, [this] { return !viewer->is_connected(); });
+    server.accept();
+    return is_held && is_lost && is_greeted();
+  }
   /// The next event, which must be a T.
   template <typename T>
   T take() {
@@ -181,12 +190,7 @@ TEST_F(WorldViewerTest, OffersANewConnectionNoMoreThanItHasRoomFor) {
   ASSERT_TRUE(is_greeted());
   server.say(welcome());
   const Bytes surface = surface_of({0, 0, 0, 0}, 3);
-  say_chunk({0, 0, 0, 0}, surface);
-  ASSERT_TRUE(run_until(loop, [&] { return viewer->held() == 1; }));
-  server.hang_up();
-  ASSERT_TRUE(run_until(loop, [&] { return !viewer->is_connected(); }));
-  server.accept();
-  ASSERT_TRUE(is_greeted());
+  ASSERT_TRUE(comes_back_holding({0, 0, 0, 0}, surface));
   const auto head = protocol::encode(
       protocol::ChunkHead{{0, 0, 0, 0}, 0, ChunkKind::kMesh, static_cast<std::uint32_t>(surface.size())});
   EXPECT_EQ(std::get<protocol::Hello>(server.heard()[0]).credit_bytes, 1'000'000 - head.size() - surface.size());
@@ -200,12 +204,7 @@ TEST_F(WorldViewerTest, GivesBackAfterAReconnectWhatWasTakenBeforeTheWelcome) {
   server.say(welcome());
   const Bytes surface = surface_of({0, 0, 0, 0}, 3);
   ASSERT_GT(surface.size(), 1000U);
-  say_chunk({0, 0, 0, 0}, surface);
-  ASSERT_TRUE(run_until(loop, [&] { return viewer->held() == 1; }));
-  server.hang_up();
-  ASSERT_TRUE(run_until(loop, [&] { return !viewer->is_connected(); }));
-  server.accept();
-  ASSERT_TRUE(is_greeted());
+  ASSERT_TRUE(comes_back_holding({0, 0, 0, 0}, surface));
   EXPECT_EQ(std::get<protocol::Hello>(server.heard()[0]).credit_bytes, 0U);
   take<Connected>();
   take<ChunkReady>();
