@@ -5,7 +5,7 @@
 
 namespace talus::server {
 
-AnswerWriter::State AnswerWriter::begin(HttpAnswer answer, const HeadOptions& options, bool is_head_only) {
+AnswerWriter::State AnswerWriter::begin(HttpAnswer&& answer, const HeadOptions& options, bool is_head_only) {
   answer_ = std::move(answer);
   net_.metrics.add(count_of(answer_.status));
   write_head(answer_, options, head_);

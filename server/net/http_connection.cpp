@@ -73,7 +73,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   Awaitable<void> refuse(HttpFault fault);
   Awaitable<void> upgrade(const StreamRoute& route, std::string_view head);
   std::optional<HttpAnswer> refuse_upgrade(const HttpRequest& request);
-  void send(HttpAnswer answer);
+  void send(HttpAnswer&& answer);
   void note(AnswerWriter::State state);
   Awaitable<void> send_rest();
   Awaitable<void> linger();
@@ -108,8 +108,8 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   bool is_http_1_0_ = false;
   bool is_head_only_ = false;
   bool has_body_ = false;
-  std::string_view path_;  ///< of the head, in input_
-  std::string request_id_;
+  std::string_view path_;          ///< of the head, in input_
+  std::string_view request_id_;    ///< of the head or of request_ids_: until the next request
   ClientId client_;                ///< whose share of the pool it takes
   std::string_view allow_origin_;  ///< of the policy
   Route route_;
@@ -213,7 +213,7 @@ bool HttpConnection::answer_now(Route& route, Instant now) {
     PayloadRef payload = net_.chunks.at_once(chunk->name, now);
     if (payload == nullptr) return false;
     net_.metrics.add(Count::kHttpChunkInMemory);
-    const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name.format);
+    const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name);
     send(chunk_answer(std::move(payload), etag, chunk->name.format));
   } else if (std::holds_alternative<MetricsRoute>(route)) {
     HttpAnswer answer;
@@ -299,7 +299,7 @@ Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_vi
     co_await send_rest();
     co_return;
   }
-  handshake->insert(handshake->size() - 2, "X-Request-Id: " + request_id_ + "\r\n");
+  handshake->insert(handshake->size() - 2, "X-Request-Id: " + std::string(request_id_) + "\r\n");
   note(writer_.begin_head(std::move(*handshake)));
   co_await send_rest();
   if (!is_serving_) co_return;
@@ -308,7 +308,7 @@ Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_vi
   start.framing = make_websocket_framing(limits_.message_bytes);
   start.world = route.world;
   start.is_admitted = route.is_admitted;
-  start.request_id = std::move(request_id_);
+  start.request_id = request_id_;
   const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
   start.received.assign(rest.begin(), rest.end());
   deadline_ = Instant::max();
@@ -316,7 +316,7 @@ Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_vi
 }
 
 /// Sends `answer` as the present request's; what is not taken at once is left.
-void HttpConnection::send(HttpAnswer answer) {
+void HttpConnection::send(HttpAnswer&& answer) {
   if (!present_->tokens.empty() && answer.cache_control == kImmutable) answer.cache_control = kImmutablePrivate;
   const HeadOptions options{sweeper().http_date(),     is_keep_alive_, is_http_1_0_, allow_origin_,
                             !policy_->origins.empty(), request_id_};

@@ -1,15 +1,16 @@
 #include "server/net/http_request.hpp"
 
-#include <http_parser.h>
-
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 
 #include "server/net/url_text.hpp"
 
 namespace talus::server {
 
 namespace {
+
+constexpr std::string_view kLineEnd = "\r\n";
 
 constexpr HttpFault kBareLine{400, "malformed_request", "lines must end in CR LF"};
 constexpr HttpFault kFolded{400, "malformed_request", "a header line starts with white space"};
@@ -24,97 +25,66 @@ constexpr HttpFault kHost{400, "malformed_request", "exactly one Host field is n
 constexpr HttpFault kTarget{400, "malformed_request", "the request target is not a path"};
 constexpr HttpFault kLengths{400, "malformed_request", "Content-Length is not one whole number"};
 constexpr HttpFault kBothLengths{400, "malformed_request", "Content-Length and Transfer-Encoding together"};
+constexpr HttpFault kCoding{400, "malformed_request", "Transfer-Encoding does not end in chunked"};
 constexpr HttpFault kLargeBody{413, "body_too_large", "the body is too large"};
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-bool is_token(std::string_view text) {
-  constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
-  const auto is_token_char = [&](char c) {
-    const char l = lower(c);
-    return (l >= 'a' && l <= 'z') || (c >= '0' && c <= '9') || kMarks.find(c) != std::string_view::npos;
-  };
-  return !text.empty() && std::all_of(text.begin(), text.end(), is_token_char);
+/// What a byte may be part of, looked up: heads are read on every request.
+enum CharKind : std::uint8_t { kTokenChar = 1, kTargetChar = 2, kHostChar = 4 };
+
+constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
+  constexpr std::string_view kTokenMarks = "!#$%&'*+-.^_`|~";
+  // RFC 3986, 3.2.2 and 3.2.3, without a user; what another server would make of anything else is not known.
+  constexpr std::string_view kHostMarks = "-._~%!$&'()*+,;=:[]";
+  std::array<std::uint8_t, 256> kinds{};
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const char c = static_cast<char>(i);
+    const bool is_letter_or_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    const bool is_token = is_letter_or_digit || kTokenMarks.find(c) != std::string_view::npos;
+    const bool is_target = i > 0x20 && i < 0x7F && c != '#';
+    const bool is_host = is_letter_or_digit || kHostMarks.find(c) != std::string_view::npos;
+    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_target ? kTargetChar : 0) |
+                                         (is_host ? kHostChar : 0));
+  }
+  return kinds;
+}();
+
+bool is_all(CharKind kind, std::string_view text) {
+  return std::all_of(text.begin(), text.end(),
+                     [kind](char c) { return (kCharKinds[static_cast<unsigned char>(c)] & kind) != 0; });
+}
+
+/// Whether one of eight bytes is below a space or DEL. Based on: S. E. Anderson, "Bit Twiddling Hacks", hasless.
+bool has_control(std::uint64_t bytes) {
+  constexpr std::uint64_t kEach = 0x0101010101010101;
+  const std::uint64_t del = bytes ^ (kEach * 0x7F);
+  return ((((bytes - kEach * 0x20) & ~bytes) | ((del - kEach) & ~del)) & (kEach * 0x80)) != 0;
 }
 
 /// The first of [from, to) that is a control character but a tab, or `to`.
 std::size_t end_of_text(std::string_view bytes, std::size_t from, std::size_t to) {
   const auto is_text = [](char c) { return (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F) || c == '\t'; };
+  for (std::uint64_t eight = 0; from + sizeof(eight) <= to; from += sizeof(eight)) {
+    std::memcpy(&eight, bytes.data() + from, sizeof(eight));
+    if (has_control(eight)) break;
+  }
   while (from < to && is_text(bytes[from])) ++from;
   return from;
 }
 
-/// What http_parser reports about one head. A name or value may come in pieces, always of one stretch of bytes.
-struct Reported {
-  std::string_view url;
-  HttpRequest* request = nullptr;
-  bool is_in_value = true;
-  bool is_complete = false;
-};
-
-void extend(std::string_view& view, const char* at, std::size_t length) {
-  view = view.empty() ? std::string_view(at, length)
-                      : std::string_view(view.data(), static_cast<std::size_t>(at + length - view.data()));
-}
-
-Reported& reported(http_parser* parser) {
-  return *static_cast<Reported*>(parser->data);
-}
-
-int on_url(http_parser* parser, const char* at, std::size_t length) {
-  extend(reported(parser).url, at, length);
-  return 0;
-}
-
-int on_header_field(http_parser* parser, const char* at, std::size_t length) {
-  Reported& r = reported(parser);
-  if (r.is_in_value) {
-    if (r.request->field_count == HttpRequest::kFieldsMax) return 1;
-    r.request->fields[r.request->field_count++] = {};
-    r.is_in_value = false;
-  }
-  extend(r.request->fields[r.request->field_count - 1].name, at, length);
-  return 0;
-}
-
-int on_header_value(http_parser* parser, const char* at, std::size_t length) {
-  Reported& r = reported(parser);
-  r.is_in_value = true;
-  extend(r.request->fields[r.request->field_count - 1].value, at, length);
-  return 0;
-}
-
-int on_headers_complete(http_parser* parser) {
-  reported(parser).is_complete = true;
-  return 0;
-}
-
-const http_parser_settings& settings() {
-  static const http_parser_settings kSettings = [] {
-    http_parser_settings s;
-    http_parser_settings_init(&s);
-    s.on_url = on_url;
-    s.on_header_field = on_header_field;
-    s.on_header_value = on_header_value;
-    s.on_headers_complete = on_headers_complete;
-    return s;
-  }();
-  return kSettings;
-}
-
-HttpMethod method_of(unsigned method) {
-  switch (method) {
-    case HTTP_GET:
-      return HttpMethod::kGet;
-    case HTTP_HEAD:
-      return HttpMethod::kHead;
-    case HTTP_OPTIONS:
-      return HttpMethod::kOptions;
-    default:
-      return HttpMethod::kOther;
-  }
+/// Nothing for what is no method of RFC 9110, RFC 5789 or WebDAV (RFC 4918).
+std::optional<HttpMethod> method_of(std::string_view name) {
+  constexpr std::array<std::string_view, 13> kOthers{"POST",    "PUT",  "DELETE",   "PATCH",     "TRACE",
+                                                     "CONNECT", "COPY", "PROPFIND", "PROPPATCH", "MKCOL",
+                                                     "MOVE",    "LOCK", "UNLOCK"};
+  if (name == "GET") return HttpMethod::kGet;
+  if (name == "HEAD") return HttpMethod::kHead;
+  if (name == "OPTIONS") return HttpMethod::kOptions;
+  if (std::ranges::find(kOthers, name) != kOthers.end()) return HttpMethod::kOther;
+  return std::nullopt;
 }
 
 /// Splits a target in origin form, absolute form or `*` (which becomes an empty path).
@@ -122,31 +92,36 @@ bool split_target(std::string_view target, HttpRequest& out) {
   constexpr std::string_view kScheme = "http://";
   if (target.size() > kScheme.size() && equal_ignoring_case(target.substr(0, kScheme.size()), kScheme)) {
     const std::size_t slash = target.find('/', kScheme.size());
-    if (slash == std::string_view::npos) return false;
+    if (slash == std::string_view::npos || slash == kScheme.size()) return false;
+    if (!is_all(kHostChar, target.substr(kScheme.size(), slash - kScheme.size()))) return false;
     target.remove_prefix(slash);
   }
   if (target == "*") return out.method == HttpMethod::kOptions;
-  if (target.empty() || target.front() != '/' || target.find('#') != std::string_view::npos) return false;
+  if (target.empty() || target.front() != '/' || !is_all(kTargetChar, target)) return false;
   const std::size_t mark = target.find('?');
   out.path = target.substr(0, mark);
   if (mark != std::string_view::npos) out.query = target.substr(mark + 1);
   return true;
 }
 
+/// Whether a list of transfer codings ends in chunked, without which nobody knows where the body does.
+bool ends_chunked(std::string_view codings) {
+  const std::size_t comma = codings.rfind(',');
+  return equal_ignoring_case(trimmed(comma == std::string_view::npos ? codings : codings.substr(comma + 1)), "chunked");
+}
+
 /// Fields that decide where a request ends and whom it is for: each has one reading or the request has none.
-std::optional<HttpFault> check_fields(HttpRequest& request, unsigned minor, const NetLimits& limits) {
+std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& limits) {
   std::size_t hosts = 0;
   std::optional<std::uint64_t> length;
-  bool has_coding = false;
+  std::optional<bool> is_chunked;
   for (std::size_t i = 0; i < request.field_count; ++i) {
     const HttpField& field = request.fields[i];
-    if (!is_token(field.name)) return kFieldName;
     if (equal_ignoring_case(field.name, "host")) {
-      // Of host and port nothing else can be part; what another server would make of it is not known.
-      if (field.value.find_first_of(" \t/?#@\\\"") != std::string_view::npos) return kHost;
+      if (!is_all(kHostChar, field.value)) return kHost;
       ++hosts;
     }
-    if (equal_ignoring_case(field.name, "transfer-encoding")) has_coding = true;
+    if (equal_ignoring_case(field.name, "transfer-encoding")) is_chunked = ends_chunked(field.value);
     if (!equal_ignoring_case(field.name, "content-length")) continue;
     std::uint64_t value = 0;
     const char* end = field.value.data() + field.value.size();
@@ -154,10 +129,25 @@ std::optional<HttpFault> check_fields(HttpRequest& request, unsigned minor, cons
     if (error != std::errc{} || at != end || length) return kLengths;
     length = value;
   }
-  if (hosts > 1 || (hosts == 0 && minor == 1)) return kHost;
-  if (length && has_coding) return kBothLengths;
+  if (hosts > 1 || (hosts == 0 && !request.is_http_1_0)) return kHost;
+  if (length && is_chunked) return kBothLengths;
+  if (is_chunked && !*is_chunked) return kCoding;
   if (length && *length > limits.body_bytes) return kLargeBody;
-  request.has_body = has_coding || length.value_or(0) > 0;
+  request.has_body = is_chunked || length.value_or(0) > 0;
+  return std::nullopt;
+}
+
+/// Method, target and version, with one space between each.
+std::optional<HttpFault> read_request_line(std::string_view line, HttpRequest& out) {
+  const std::size_t target = line.find(' ') + 1;  // 0 without a space
+  const std::size_t version = line.find(' ', target) + 1;
+  if (target == 0 || version == 0 || line.find(' ', version) != std::string_view::npos) return kGrammar;
+  const auto method = method_of(line.substr(0, target - 1));
+  if (!method) return kGrammar;
+  out.method = *method;
+  if (line.substr(version) != "HTTP/1.1" && line.substr(version) != "HTTP/1.0") return kVersion;
+  out.is_http_1_0 = line.back() == '0';
+  if (!split_target(line.substr(target, version - 1 - target), out)) return kTarget;
   return std::nullopt;
 }
 
@@ -219,32 +209,20 @@ bool HttpRequest::lists(std::string_view name, std::string_view token) const {
 }
 
 std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits& limits, HttpRequest& request) {
-  Reported report;
-  report.request = &request;
-  http_parser parser;
-  http_parser_init(&parser, HTTP_REQUEST);
-  // Both present is refused below with a reason of its own.
-  parser.allow_chunked_length = 1;
-  parser.data = &report;
-  const std::size_t taken = http_parser_execute(&parser, &settings(), head.data(), head.size());
-  // An upgrade ends the parser's work on the last byte of the head; a declared body lies behind it.
-  if (!report.is_complete || HTTP_PARSER_ERRNO(&parser) != HPE_OK || (taken != head.size() && parser.upgrade == 0)) {
-    return kGrammar;
+  std::size_t end = head.find('\r');
+  if (const auto fault = read_request_line(head.substr(0, end), request)) return fault;
+  for (head.remove_prefix(end + kLineEnd.size()); head.size() > kLineEnd.size();
+       head.remove_prefix(end + kLineEnd.size())) {
+    end = head.find('\r');
+    const std::string_view line = head.substr(0, end);
+    const std::size_t colon = line.find(':');
+    if (colon == 0 || colon == std::string_view::npos || !is_all(kTokenChar, line.substr(0, colon))) return kFieldName;
+    if (request.field_count == HttpRequest::kFieldsMax) return kManyFields;
+    request.fields[request.field_count++] = {line.substr(0, colon), trimmed(line.substr(colon + 1))};
   }
-  // The parser forgives runs of spaces; what another server sees there may be another target.
-  const std::string_view line = head.substr(0, head.find('\r'));
-  if (std::count(line.begin(), line.end(), ' ') != 2) return kGrammar;
-  if (parser.http_major != 1 || parser.http_minor > 1) return kVersion;
-  request.method = method_of(parser.method);
-  request.is_http_1_0 = parser.http_minor == 0;
   request.is_keep_alive =
-      parser.http_minor == 1 ? !request.lists("connection", "close") : request.lists("connection", "keep-alive");
-  for (std::size_t i = 0; i < request.field_count; ++i) {
-    request.fields[i].value = trimmed(request.fields[i].value);
-  }
-  if (const auto fault = check_fields(request, parser.http_minor, limits)) return fault;
-  if (!split_target(report.url, request)) return kTarget;
-  return std::nullopt;
+      request.is_http_1_0 ? request.lists("connection", "keep-alive") : !request.lists("connection", "close");
+  return check_fields(request, limits);
 }
 
 std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits) {

@@ -1,7 +1,8 @@
 // One HTTP/1.1 request head: found in the bytes of a connection, then parsed. Pure; views point into those bytes.
 //
-// http_parser knows the grammar but forgives what smuggling lives on: bare line feeds, folded lines, space before a
-// colon, several hosts, lengths that disagree. All of these are refused here.
+// Strict, since smuggling lives on what is forgiven: bare line feeds, folded lines, space before a colon, several
+// hosts, lengths that disagree are all refused. `tests/fuzz` holds that what is let in is what http_parser reads as
+// well.
 #pragma once
 
 #include <array>

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "core/base/hash.hpp"
@@ -26,11 +25,11 @@ inline bool is_request_id(std::string_view text) {
 }
 
 /// Sixteen hexadecimal digits.
-inline std::string hex_digits(std::uint64_t value) {
+inline std::array<char, 16> hex_digits(std::uint64_t value) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::array<char, 16> out{};
   for (std::size_t i = out.size(); i-- > 0; value >>= 4U) out[i] = kDigits[value & 15U];
-  return {out.data(), out.size()};
+  return out;
 }
 
 /// The names of one connection's requests. Owner: the connection.
@@ -40,14 +39,20 @@ class RequestIds {
   RequestIds(std::uint64_t connection, Instant opened)
       : base_(mix64(static_cast<std::uint64_t>(opened.time_since_epoch().count()), connection)) {}
 
-  std::string next() { return hex_digits(mix64(base_, ++requests_)); }
-  std::string of(const std::optional<std::string_view>& given) {
-    return given && is_request_id(*given) ? std::string(*given) : next();
+  /// Good until the next is made.
+  std::string_view next() {
+    made_ = hex_digits(mix64(base_, ++requests_));
+    return {made_.data(), made_.size()};
+  }
+  /// What the peer calls it, as long as its bytes are there, or one of ours.
+  std::string_view of(const std::optional<std::string_view>& given) {
+    return given && is_request_id(*given) ? *given : next();
   }
 
  private:
   const std::uint64_t base_;
   std::uint64_t requests_ = 0;
+  std::array<char, 16> made_{};
 };
 
 }  // namespace talus::server

@@ -264,8 +264,8 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
     if (kind == Listen::kTcp) {
       StreamStart start;
       start.framing = make_tcp_framing(pass.policy->limits.message_bytes);
-      start.request_id =
-          RequestIds(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now()).next();
+      RequestIds ids(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now());
+      start.request_id = ids.next();
       start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
     } else {
       const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;

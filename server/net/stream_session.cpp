@@ -248,7 +248,8 @@ void StreamSession::on_hello(const protocol::Hello& hello) {
                 weak_from_this());
   phase_ = Phase::kOpen;
   net_.metrics.add(Count::kSessionsOpened);
-  id_ = hex_digits(mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
+  const auto digits = hex_digits(mix64(static_cast<std::uint64_t>(opened_.time_since_epoch().count()), number));
+  id_.assign(digits.data(), digits.size());
   log(LogLevel::kInfo, "session opened",
       {{"request", request_id_}, {"session", id_}, {"world", world.name()}, {"client", hello.client}});
   writer_.send_control(protocol::Welcome{version, id_, world.hash(), std::string(format->name), world.manifest_json()});

@@ -65,6 +65,8 @@ describe('map tiles', () => {
       etags.add(answer.headers.etag);
       const again = await request(http, `${tilePath(5, 0, 0)}?layer=${layer}`, { headers: { 'If-None-Match': answer.headers.etag } });
       assert.equal(again.status, 304, layer);
+      const remembered = await request(http, `${tilePath(5, 0, 0)}?layer=${layer}`);
+      assert.equal(remembered.headers.etag, answer.headers.etag, `${layer}, from memory`);
     }
     assert.ok(map.layers.includes('plates') && map.layers.includes('districts'));
     assert.equal(pictures.size, map.layers.length);

@@ -51,6 +51,7 @@ TEST(HttpRequest, IsRefusedWhenItCouldBeReadInTwoWays) {
       {"no colon", get + host + "nothing\r\n\r\n", 400},
       {"a zero byte", get + host + std::string("A: b\0c\r\n\r\n", 10), 400},
       {"version 0.9", "GET /\r\n\r\n", 400},
+      {"a host in Latin", get + "Host: \xE4\r\n\r\n", 400},
       {"a list of hosts", get + "Host: a, b\r\n\r\n", 400},
       {"a host with a user", get + "Host: a@b\r\n\r\n", 400},
       {"a host with a path", get + "Host: a/b\r\n\r\n", 400},
@@ -61,6 +62,18 @@ TEST(HttpRequest, IsRefusedWhenItCouldBeReadInTwoWays) {
       {"an unknown method", "FETCH / HTTP/1.1\r\nHost: a\r\n\r\n", 400},
       {"a path without slash", "GET a HTTP/1.1\r\nHost: a\r\n\r\n", 400},
       {"a fragment", "GET /#a HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a fragment of a query", "GET /?a#b HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a target in Latin", "GET /\xE4 HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a tab in a target", "GET /a\tb HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"three spaces", "GET /a b HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a space at the end of the line", "GET / HTTP/1.1 \r\nHost: a\r\n\r\n", 400},
+      {"a user in a target", "GET http://a@b/ HTTP/1.1\r\nHost: b\r\n\r\n", 400},
+      {"a query that hides a path", "GET http://a?b/c HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a target without host", "GET http:///a HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a target of another scheme", "GET ftp://a/ HTTP/1.1\r\nHost: a\r\n\r\n", 400},
+      {"a coding that does not end", get + host + "Transfer-Encoding: chunked, gzip\r\n\r\n", 400},
+      {"a coding without chunks", get + host + "Transfer-Encoding: identity\r\n\r\n", 400},
+      {"a name with a byte of no token", get + host + "A\xE4: b\r\n\r\n", 400},
       {"a star for get", "GET * HTTP/1.1\r\nHost: a\r\n\r\n", 400},
       {"a TLS greeting", std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 15), 400},
       {"a long request line", "GET /" + std::string(9000, 'a') + " HTTP/1.1\r\nHost: a\r\n\r\n", 414},
@@ -129,14 +142,14 @@ TEST(RequestIds, AreThePeersWhereTheyAreFitAndElseMade) {
   std::set<std::string> made;
   for (const std::string& unfit : {std::string(), std::string(65, 'x'), std::string("a b"), std::string("a\"b"),
                                    std::string("a\\b"), std::string("a\tb"), std::string("\xC3\xA9")}) {
-    const std::string id = ids.of(unfit);
+    const std::string id(ids.of(unfit));
     EXPECT_EQ(id.size(), 16U) << unfit;
     EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
     made.insert(id);
   }
-  made.insert(ids.of(std::nullopt));
-  made.insert(RequestIds(8, Instant(std::chrono::seconds(5))).next());
-  made.insert(RequestIds(7, Instant(std::chrono::seconds(6))).next());
+  made.emplace(ids.of(std::nullopt));
+  made.emplace(RequestIds(8, Instant(std::chrono::seconds(5))).next());
+  made.emplace(RequestIds(7, Instant(std::chrono::seconds(6))).next());
   EXPECT_EQ(made.size(), 10U) << "no two are alike";
 }
 
