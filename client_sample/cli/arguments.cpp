@@ -212,6 +212,7 @@ void add_gallery(CLI::App& app, Arguments& arguments) {
   CLI::App* gallery = app.add_subcommand("gallery", "Draw side by side what single parameters do");
   gallery->add_option("folder", options.folder, "where the PNG files go")->required();
   gallery->add_option("--worlds", options.worlds, "folder of TOML files, to show side by side as well");
+  gallery->add_option("--only", options.only, "one picture, by the name of its file (octaves, warp, carving ...)");
   gallery->add_option("--size", options.size, "pixels along each edge of one picture")
       ->capture_default_str()
       ->check(CLI::Range(64, 1024));

@@ -123,6 +123,7 @@ ExitCode survey(const SurveyOptions& options);
 struct GalleryOptions {
   std::string folder;
   std::string worlds;  ///< folder of TOML files, drawn side by side as well; empty: none
+  std::string only;    ///< the file of one parameter, without its ending; empty: all
   int size = 200;      ///< pixels along each edge of one picture
 };
 /// Draws side by side what single parameters do: one PNG a parameter.

@@ -150,6 +150,13 @@ ExitCode gallery(const GalleryOptions& options) {
     if (!worlds) return kFailed;
     all_exhibits.push_back(std::move(*worlds));
   }
+  if (!options.only.empty()) {
+    std::erase_if(all_exhibits, [&](const Exhibit& exhibit) { return exhibit.file != options.only; });
+    if (all_exhibits.empty()) {
+      fmt::print(stderr, "talus: there is no picture {}\n", options.only);
+      return kUsage;
+    }
+  }
   for (const Exhibit& exhibit : all_exhibits) {
     const int count = static_cast<int>(exhibit.frames.size());
     Picture all{count * options.size + (count - 1) * kGap, options.size, {}};

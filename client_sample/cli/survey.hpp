@@ -45,7 +45,8 @@ struct SurveyFigures {
   double coast_overhangs_per_km = 0;                  ///< of shore, columns a metre apart that have one
 };
 
-SurveyFigures survey_figures(const WorldFunction& world, const SurveyGrid& grid);
+/// `probes`: how many columns of land, and of the shore, are looked at for overhangs.
+SurveyFigures survey_figures(const WorldFunction& world, const SurveyGrid& grid, int probes = 600);
 
 struct SurveyPlace {
   std::string kind;  ///< peak, canyon, sea cliff, island chain, inland water, trench, rift, overhang, arch

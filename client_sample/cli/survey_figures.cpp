@@ -14,8 +14,6 @@ constexpr int kSurveyEdge = 1024;
 constexpr int kTileColumns = 128;  // columns a strip evaluates at a time
 /// Creases of the ridge map below this carry water.
 constexpr float kStream = -0.6f;
-constexpr int kLandProbes = 600;
-constexpr int kShoreProbes = 600;
 
 double percentile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
@@ -100,8 +98,8 @@ void coast(const SurveyGrid& grid, SurveyFigures& out) {
   out.coast_dimension = -(n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// Columns of land, and of the shore, looked at in full.
-void overhangs(const WorldFunction& world, const SurveyGrid& grid, SurveyFigures& out) {
+/// `probes` columns of land, and as many of the shore, looked at in full.
+void overhangs(const WorldFunction& world, const SurveyGrid& grid, int probes, SurveyFigures& out) {
   std::vector<glm::ivec2> land;
   std::vector<glm::ivec2> shore;
   for (int k = 1; k + 1 < grid.edge; ++k) {
@@ -115,7 +113,7 @@ void overhangs(const WorldFunction& world, const SurveyGrid& grid, SurveyFigures
     }
   }
   DensityBrick brick;
-  const auto share = [&](const std::vector<glm::ivec2>& from, int probes, std::uint64_t use) {
+  const auto share = [&](const std::vector<glm::ivec2>& from, std::uint64_t use) {
     if (from.empty()) return 0.0;
     int found = 0;
     for (int p = 0; p < probes; ++p) {
@@ -126,9 +124,9 @@ void overhangs(const WorldFunction& world, const SurveyGrid& grid, SurveyFigures
     }
     return static_cast<double>(found) / probes;
   };
-  out.overhang_share = share(land, kLandProbes, 1);
+  out.overhang_share = share(land, 1);
   // A strip one spacing wide along the shore holds spacing_m columns of a metre for every metre of it.
-  out.coast_overhangs_per_km = share(shore, kShoreProbes, 2) * grid.spacing_m * 1000;
+  out.coast_overhangs_per_km = share(shore, 2) * grid.spacing_m * 1000;
 }
 
 }  // namespace
@@ -166,12 +164,12 @@ SurveyGrid survey_grid(const WorldFunction& world, const MapArea& area) {
   return out;
 }
 
-SurveyFigures survey_figures(const WorldFunction& world, const SurveyGrid& grid) {
+SurveyFigures survey_figures(const WorldFunction& world, const SurveyGrid& grid, int probes) {
   SurveyFigures out;
   heights(grid, out);
   slopes_and_streams(grid, out);
   coast(grid, out);
-  overhangs(world, grid, out);
+  overhangs(world, grid, probes, out);
   return out;
 }
 

@@ -7,12 +7,12 @@
 namespace talus::bench {
 namespace {
 
-using talus::testing::flight;
-using talus::testing::hot_hit_ratio;
-using talus::testing::interleaved;
-using talus::testing::LruCache;
-using talus::testing::OurCache;
-using talus::testing::Trace;
+using talus::test::flight;
+using talus::test::hot_hit_ratio;
+using talus::test::interleaved;
+using talus::test::LruCache;
+using talus::test::OurCache;
+using talus::test::Trace;
 
 void ratios(benchmark::State& state, const Trace& trace) {
   const auto bytes_max = static_cast<std::size_t>(state.range(0)) << 20;
@@ -24,10 +24,10 @@ void ratios(benchmark::State& state, const Trace& trace) {
 }
 
 void CacheVisits(benchmark::State& state) {
-  ratios(state, interleaved(talus::testing::visits(8, 12), 0));
+  ratios(state, interleaved(talus::test::visits(8, 12), 0));
 }
 void CacheVisitsScanned(benchmark::State& state) {
-  ratios(state, interleaved(talus::testing::visits(8, 12), static_cast<int>(state.range(1))));
+  ratios(state, interleaved(talus::test::visits(8, 12), static_cast<int>(state.range(1))));
 }
 /// One viewer on a circle, round and round: the worst case of an order of last use when the circle does not fit.
 void CacheCircle(benchmark::State& state) {

@@ -63,7 +63,7 @@ void FieldErosionScalar(benchmark::State& state) {
     for (int k = 0; k < 64; k += 4) {
       for (int i = 0; i < 64; ++i) {
         const auto n = static_cast<std::size_t>(k * 64 + i);
-        benchmark::DoNotOptimize(testing::erode_reference(
+        benchmark::DoNotOptimize(test::erode_reference(
             controls, static_cast<double>(kTile.x_voxel + i), static_cast<double>(kTile.z_voxel + k),
             static_cast<double>(a.slope_x[n]), static_cast<double>(a.slope_z[n]), static_cast<double>(a.fade[n]), 0.9));
       }

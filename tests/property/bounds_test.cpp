@@ -116,7 +116,7 @@ class Stack {
 };
 
 /// Most boxes are small; one in eight may be as large as the stack.
-Stack::Box random_box(testing::Random& random, const Stack& stack, int columns) {
+Stack::Box random_box(test::Random& random, const Stack& stack, int columns) {
   const auto interval = [&](int count, int& low, int& high) {
     const std::int64_t most = random.whole(0, 7) == 0 ? count - 1 : std::min(count - 1, 8);
     const std::int64_t length = random.whole(0, most);
@@ -133,7 +133,7 @@ Stack::Box random_box(testing::Random& random, const Stack& stack, int columns) 
 TEST(Bounds, AreNeverWrong) {
   const std::int64_t boxes = asked("TALUS_BOUND_BOXES", 100'000);
   const auto seed = static_cast<std::uint64_t>(asked("TALUS_BOUND_SEED", 41));
-  testing::Random random(seed);
+  test::Random random(seed);
   std::int64_t air = 0;
   std::int64_t rock = 0;
   std::int64_t carved = 0;
@@ -143,7 +143,7 @@ TEST(Bounds, AreNeverWrong) {
     const glm::dvec2 range = world.height_range_m();
     for (int chunk = 0; chunk < 130 && at < boxes; ++chunk) {
       const int lod = chunk % 2 == 0 ? 0 : static_cast<int>(random.whole(0, kLodMax));
-      const ChunkKey key = testing::random_surface_key(world, random, lod);
+      const ChunkKey key = test::random_surface_key(world, random, lod);
       const Stack stack(world, key);
       ASSERT_LE(range.x, range.y);
       carved += stack.is_carved() ? 1 : 0;

@@ -24,9 +24,9 @@ Bytes bytes_of(const WorldFunction& world, const ChunkKey& key, ChunkScratch& sc
 }
 
 std::vector<ChunkKey> keys_of(const WorldFunction& world) {
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   std::vector<ChunkKey> keys;
-  for (int n = 0; n < 96; ++n) keys.push_back(testing::random_surface_key(world, random, n % 9));
+  for (int n = 0; n < 96; ++n) keys.push_back(test::random_surface_key(world, random, n % 9));
   return keys;
 }
 
@@ -65,7 +65,7 @@ TEST(Purity, SameBytesOnEverySimdTarget) {
   ChunkScratch scratch;
   std::vector<Bytes> best;
   for (std::size_t n = 0; n < 18; ++n) best.push_back(bytes_of(world, keys[n], scratch));
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     for (std::size_t n = 0; n < best.size(); ++n) EXPECT_EQ(bytes_of(world, keys[n], scratch), best[n]) << target;
   });
   EXPECT_GE(targets, 2) << "nothing was compared";

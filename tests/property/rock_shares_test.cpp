@@ -18,7 +18,7 @@ struct Chi {
 };
 
 /// Draws places of one layer all over a square of land and compares its rocks with their probabilities.
-void add_layer(const WorldFunction& world, testing::Random& random, LayerPlace place, double origin_m, Chi& chi) {
+void add_layer(const WorldFunction& world, test::Random& random, LayerPlace place, double origin_m, Chi& chi) {
   constexpr int kPlaces = 20'000;
   constexpr float kStack_m = 3'600;
   const LayerSet& set = world.terms().strata->set(place.set);
@@ -59,7 +59,7 @@ TEST(RockShares, MatchTheProbabilitiesOfTheirLayersNearTheOriginAndFarOut) {
   const WorldFunction world{Manifest()};
   for (const double origin_m : {0.0, 1e9}) {
     constexpr std::uint64_t kSeed = 4711;
-    testing::Random random(kSeed);
+    test::Random random(kSeed);
     Chi chi;
     for (int n = 0; n < 60; ++n) {
       const LayerPlace place{n % world.terms().strata->sets(), static_cast<int>(random.whole(0, kLayers - 1))};
@@ -75,7 +75,7 @@ TEST(RockShares, OfAWrappedWorldMatchThemAsWell) {
   Manifest manifest;
   manifest.values[parameter_index("world.wrap_m")] = 1'048'576;
   const WorldFunction world(manifest);
-  testing::Random random(5);
+  test::Random random(5);
   Chi chi;
   for (int n = 0; n < 20; ++n) add_layer(world, random, {n % 12, 100 + 90 * n}, 0, chi);
   EXPECT_LT(excess(chi), 4.5) << chi.sum << " of " << chi.freedom;

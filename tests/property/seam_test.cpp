@@ -63,12 +63,12 @@ std::vector<FaceVertex> on_face(const ChunkMesh& mesh, int axis, int at) {
 TEST(Seams, OfOneLodAreBitEqualAfterDecoding) {
   const WorldFunction world{Manifest()};
   Wire wire(world);
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   int faces = 0;
   std::size_t vertices = 0;
   for (int lod = 0; lod <= kLodMax; ++lod) {
     for (int n = 0; n < kKeysPerLod; ++n) {
-      const ChunkKey key = testing::random_surface_key(world, random, lod);
+      const ChunkKey key = test::random_surface_key(world, random, lod);
       const int axis = static_cast<int>(random.whole(0, 2));
       ChunkKey next = key;
       (axis == 0 ? next.x : axis == 1 ? next.y : next.z) += 1;

@@ -44,7 +44,7 @@ struct Spectrum {
 
 Spectrum spectrum_at(const WorldFunction& world, double far_m, std::int64_t step) {
   Spectrum out;
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   ColumnBlock block;
   const auto far = static_cast<std::int64_t>(far_m);
   for (int n = 0; n < 900 && out.rows < 240; ++n) {
@@ -86,7 +86,7 @@ TEST(Spectrum, WouldShowStairsOfTheWidthOfAFloat) {
   // What positions in floats would do at 10^9 m, 64 m apart: rows sampled in steps, whose fine bands are those of
   // walls.
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   ColumnBlock block;
   Bands smooth{};
   Bands stairs{};

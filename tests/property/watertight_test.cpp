@@ -156,7 +156,7 @@ std::optional<ChunkKey> holder_of(const Area& area, ChunkKey key) {
 void expect_watertight(Wire& wire, Decoded& decoded, const std::vector<ChunkKey>& drawn, int cells,
                        std::size_t triangles_max, Totals& totals) {
   const Area area(drawn.begin(), drawn.end());
-  testing::Assembly assembly(cells);
+  test::Assembly assembly(cells);
   std::set<StripKey> strips;
   for (const ChunkKey& key : drawn) {
     assembly.add_place(key);
@@ -174,13 +174,13 @@ void expect_watertight(Wire& wire, Decoded& decoded, const std::vector<ChunkKey>
   totals.strips += strips.size();
   const auto open = assembly.open_edges(triangles_max);
   totals.edges += assembly.edges();
-  ASSERT_TRUE(open.empty()) << open.size() << " edges are open, the first from and to " << testing::text_of(open[0])
+  ASSERT_TRUE(open.empty()) << open.size() << " edges are open, the first from and to " << test::text_of(open[0])
                             << "(steps of LOD 0)";
 }
 
 /// What a client draws while the places of one view give way, in any order, to those of the next: SPEC.md 6.1.
 std::vector<ChunkKey> between(Decoded& decoded, const std::vector<ChunkKey>& before, const std::vector<ChunkKey>& after,
-                              testing::Random& random) {
+                              test::Random& random) {
   const Area old_area(before.begin(), before.end());
   const Area new_area(after.begin(), after.end());
   // A place is named by the coarsest chunk that covers it in either view.
@@ -234,8 +234,8 @@ class Watertight : public ::testing::Test {
   /// Calls body(number, random, wire) for each of `views`, until one fails.
   template <class Body>
   void for_views(int views, Body body) {
-    testing::Random random(seed());
-    testing::RandomViews places(world_, random);
+    test::Random random(seed());
+    test::RandomViews places(world_, random);
     Wire wire(world_);
     for (int number = 0; number < views; ++number) {
       const protocol::View view = places.view(number);
@@ -244,7 +244,7 @@ class Watertight : public ::testing::Test {
       wire.forget();
       body(view, random, wire);
       if (HasFatalFailure()) return;
-      count_ground(wire, testing::RandomViews::is_far(number) ? 1 : 0);
+      count_ground(wire, test::RandomViews::is_far(number) ? 1 : 0);
     }
     std::printf("%d views: %zu meshes, %zu strips, %zu edges closed\n", views, totals_.meshes, totals_.strips,
                 totals_.edges / 2);
@@ -274,14 +274,14 @@ class Watertight : public ::testing::Test {
 };
 
 TEST_F(Watertight, EveryEdgeOfARandomViewIsSharedByExactlyTwoTriangles) {
-  for_views(views_asked(200), [&](const protocol::View& view, testing::Random&, Wire& wire) {
+  for_views(views_asked(200), [&](const protocol::View& view, test::Random&, Wire& wire) {
     Decoded decoded(wire, shape_.cells);
     expect_watertight(wire, decoded, area_of(view, shape_), shape_.cells, 2, totals_);
   });
 }
 
 TEST_F(Watertight, AndSoIsEverythingThatMayBeDrawnBetweenTwoViewsOfAFlight) {
-  for_views(views_asked(80) / 2, [&](protocol::View view, testing::Random& random, Wire& wire) {
+  for_views(views_asked(80) / 2, [&](protocol::View view, test::Random& random, Wire& wire) {
     Decoded decoded(wire, shape_.cells);
     const std::vector<ChunkKey> before = area_of(view, shape_);
     const bool is_jump = random.unit() < 0.3;

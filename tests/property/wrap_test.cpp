@@ -24,14 +24,14 @@ Manifest wrapping() {
 
 TEST(Wrap, RepeatsWholeChunksBitForBitAtEveryLod) {
   const WorldFunction world{wrapping()};
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   ChunkScratch scratch;
   ChunkMesh here;
   ChunkMesh there;
   int surfaces = 0;
   for (int n = 0; n < 120; ++n) {
     const int lod = n % (kLodMax + 1);
-    ChunkKey key = testing::random_surface_key(world, random, lod);
+    ChunkKey key = test::random_surface_key(world, random, lod);
     const std::int64_t edge = static_cast<std::int64_t>(world.cells()) << lod;
     // A third of the keys lie right on the seam.
     if (n % 3 == 0) key.x = n % 2 == 0 ? 0 : -1;
@@ -52,7 +52,7 @@ TEST(Wrap, RepeatsWholeChunksBitForBitAtEveryLod) {
 
 TEST(Wrap, HasNoSeam) {
   const WorldFunction world{wrapping()};
-  testing::Random random(kSeed);
+  test::Random random(kSeed);
   ColumnBlock block;
   for (int n = 0; n < 40; ++n) {
     world.columns({kPeriod * random.whole(-2, 2) - 16, random.whole(-1'000'000, 1'000'000), 1, 33, 33, 1}, block);

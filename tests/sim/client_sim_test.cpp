@@ -13,15 +13,13 @@
 namespace talus::server {
 namespace {
 
-using client::Carrier;
-
-client::ServerAddress address_of(RunningServer& server, Carrier carrier) {
-  const bool is_tcp = carrier == Carrier::kTcp;
+client::ServerAddress address_of(RunningServer& server, client::Carrier carrier) {
+  const bool is_tcp = carrier == client::Carrier::kTcp;
   const std::string& bound = is_tcp ? server->tcp_address() : server->http_address();
   return *client::parse_server_url((is_tcp ? "tcp://" : "http://") + bound);
 }
 
-class ClientOver : public testing::TestWithParam<Carrier> {
+class ClientOver : public testing::TestWithParam<client::Carrier> {
  protected:
   template <typename Done>
   bool run_until(Done done) {
@@ -34,8 +32,8 @@ class ClientOver : public testing::TestWithParam<Carrier> {
   client::Loop loop;
 };
 
-INSTANTIATE_TEST_SUITE_P(Carriers, ClientOver, testing::Values(Carrier::kWebSocket, Carrier::kTcp),
-                         [](const auto& of) { return of.param == Carrier::kTcp ? "Tcp" : "WebSocket"; });
+INSTANTIATE_TEST_SUITE_P(Carriers, ClientOver, testing::Values(client::Carrier::kWebSocket, client::Carrier::kTcp),
+                         [](const auto& of) { return of.param == client::Carrier::kTcp ? "Tcp" : "WebSocket"; });
 
 TEST_P(ClientOver, AViewBecomesCompleteAndIsItsInterestArea) {
   client::StreamOptions options;
@@ -107,7 +105,8 @@ TEST_P(ClientOver, AServerThatKnowsNoSuchWorldSaysSo) {
   const client::WorldStream stream(loop, options, handlers);
   ASSERT_TRUE(run_until([&] { return closed.has_value(); }));
   // A WebSocket names its world in the path already.
-  EXPECT_EQ(closed->code, GetParam() == Carrier::kTcp ? client::ErrorCode::kRefused : client::ErrorCode::kHandshake);
+  EXPECT_EQ(closed->code,
+            GetParam() == client::Carrier::kTcp ? client::ErrorCode::kRefused : client::ErrorCode::kHandshake);
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace talus::server {
 namespace {
 
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 40;
-
 Settings one_thread() {
   Settings settings = quiet_settings();
   settings.threads = 1;

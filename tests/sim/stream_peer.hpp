@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -16,6 +17,9 @@ struct Arrived {
   int opcode = 2;     ///< of WebSocket; 2 is a message
   std::string bytes;  ///< the frame's payload
 };
+
+/// Credit that never runs out.
+inline constexpr std::uint64_t kPlenty = std::uint64_t{1} << 40;
 
 class StreamPeer {
  public:

@@ -17,7 +17,6 @@ using Carrier = StreamPeer::Carrier;
 using protocol::Bye;
 using protocol::ByeReason;
 using protocol::ChunkHead;
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 40;
 
 /// What came until idle: the keys of chunks, sorted.
 struct View {

@@ -1,6 +1,5 @@
 // What a server has made once, the next one serves from its disk.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include "tests/sim/running_server.hpp"
 #include "tests/sim/stream_peer.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace talus::server {
 namespace {
@@ -16,11 +16,7 @@ namespace fs = std::filesystem;
 
 class WarmRestart : public testing::Test {
  protected:
-  WarmRestart() : folder(fs::temp_directory_path() / ("talus-warm-" + std::to_string(::getpid()))) {
-    fs::remove_all(folder);
-    settings.disk_cache = folder.string();
-  }
-  ~WarmRestart() override { fs::remove_all(folder); }
+  WarmRestart() { settings.disk_cache = folder.path().string(); }
 
   /// Every chunk message of one view, as it came; the view must become complete, however busy the machine.
   static std::map<ChunkKey, std::string> view_of(RunningServer& server) {
@@ -39,7 +35,7 @@ class WarmRestart : public testing::Test {
     return out;
   }
 
-  fs::path folder;
+  const test::ScratchFolder folder;
   Settings settings = quiet_settings();
 };
 
@@ -62,7 +58,7 @@ TEST_F(WarmRestart, MakesAnewWhatTheDiskHasLost) {
   {
     RunningServer server(settings);
     cold = view_of(server);
-    fs::remove_all(folder);
+    fs::remove_all(folder.path());
   }
   RunningServer server(settings);
   EXPECT_TRUE(view_of(server) == cold);

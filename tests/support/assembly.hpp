@@ -11,7 +11,7 @@
 #include "core/grid/chunk_face.hpp"
 #include "core/mesh/chunk_mesh.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 /// A place in steps of the finest LOD's lattice: exact at any LOD.
 using Place = std::array<std::int64_t, 3>;
@@ -126,4 +126,4 @@ inline std::string text_of(const Walked& edge) {
   return out;
 }
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -15,7 +15,7 @@
 #include "server/cache/memory_cache.hpp"
 #include "tests/support/random.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 struct Asked {
   ChunkKey key;
@@ -148,4 +148,4 @@ inline std::vector<Trace> visits(int viewers, int steps) {
   return out;
 }
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -14,7 +14,7 @@
 #include "core/base/hash.hpp"
 #include "core/volume/height_source.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 class CliffCoast final : public HeightSource {
  public:
@@ -90,4 +90,4 @@ class CliffCoast final : public HeightSource {
   std::vector<float> memory_;
 };
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -14,7 +14,7 @@
 #include "core/world/terms.hpp"
 #include "tests/support/cliff_coast.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 class MadeUpVolume {
  public:
@@ -117,4 +117,4 @@ class MadeUpVolume {
   HardnessProfile profile_;
 };
 
-}  // namespace talus::testing
+}  // namespace talus::test

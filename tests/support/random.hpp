@@ -1,11 +1,13 @@
 // Chance for property tests: seeded, printed on failure, the same on every machine.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/base/hash.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 class Random {
  public:
@@ -23,4 +25,12 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace talus::testing
+/// Bytes without a pattern, the same for the same size.
+inline std::vector<std::byte> noise(std::size_t size) {
+  Random random(size);
+  std::vector<std::byte> out(size);
+  for (std::byte& b : out) b = static_cast<std::byte>(random.bits() & 0xFF);
+  return out;
+}
+
+}  // namespace talus::test

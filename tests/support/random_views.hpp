@@ -14,7 +14,7 @@
 #include "protocol/interest_area.hpp"
 #include "tests/support/random.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 /// What a view stands at. Of the last two kinds it has what they are named by, or else the steepest ground found.
 enum class Ground : std::uint8_t { kHigh, kShore, kAny, kCliff, kAlcove, kArch };
@@ -146,4 +146,4 @@ class RandomViews {
   VolumeScratch scratch_;
 };
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace talus::testing {
+namespace talus::test {
 
 /// Calls body(target name) with each target chosen in turn, then restores the best one. Returns how many there were.
 template <class Body>
@@ -23,4 +23,4 @@ int for_each_simd_target(Body body) {
   return count;
 }
 
-}  // namespace talus::testing
+}  // namespace talus::test

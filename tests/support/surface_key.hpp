@@ -8,7 +8,7 @@
 #include "core/world/world_function.hpp"
 #include "tests/support/random.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 /// The chunk of `lod` that holds the surface at a random place, half of them within 40 chunks of the origin, half up to
 /// 10^9 m.
@@ -24,4 +24,4 @@ inline ChunkKey random_surface_key(const WorldFunction& world, Random& random, i
           static_cast<std::int32_t>(z)};
 }
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -53,7 +53,7 @@ struct Results {
 };
 
 std::vector<float> unit_samples() {
-  testing::Random random(1);
+  test::Random random(1);
   std::vector<float> out(1 << 16);
   for (float& v : out) v = static_cast<float>(random.unit());
   out[0] = 0.0f;
@@ -91,7 +91,7 @@ TEST(SimdMath, GivesTheSameBitsOnEveryTarget) {
   const auto same = [](const std::vector<float>& a, const std::vector<float>& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
   };
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Results r(unit);
     EXPECT_TRUE(same(r.cosine, best.cosine)) << target;
     EXPECT_TRUE(same(r.sine, best.sine)) << target;

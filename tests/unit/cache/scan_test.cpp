@@ -6,16 +6,16 @@
 namespace talus::server {
 namespace {
 
-using talus::testing::hot_hit_ratio;
-using talus::testing::interleaved;
-using talus::testing::LruCache;
-using talus::testing::OurCache;
-using talus::testing::Trace;
+using talus::test::hot_hit_ratio;
+using talus::test::interleaved;
+using talus::test::LruCache;
+using talus::test::OurCache;
+using talus::test::Trace;
 
 class Scan : public ::testing::Test {
  protected:
   static constexpr std::size_t kBytesMax = std::size_t{12} << 20;
-  const std::vector<Trace> visits = talus::testing::visits(8, 12);
+  const std::vector<Trace> visits = talus::test::visits(8, 12);
 };
 
 TEST_F(Scan, CostsTheOthersAtMostFivePointsOfTheirHits) {

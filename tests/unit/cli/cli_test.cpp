@@ -13,6 +13,8 @@
 #include "client_sample/cli/map_picture.hpp"
 #include "client_sample/cli/mesh_file.hpp"
 #include "client_sample/cli/text.hpp"
+#include "tests/support/rounds.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace talus::cli {
 namespace {
@@ -24,20 +26,7 @@ int talus(std::vector<std::string> words) {
   return run(static_cast<int>(argv.size()), argv.data());
 }
 
-/// A folder that is gone after the test.
-class Scratch {
- public:
-  Scratch() : path_(std::filesystem::temp_directory_path() / "talus-cli-XXXXXX") {
-    std::string name = path_.string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    path_ = name;
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  std::string operator/(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using Scratch = test::ScratchFolder;
 
 std::string content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -203,7 +192,7 @@ TEST(Cli, DrawsACliffAsItIsSeenFromTheSea) {
 }
 
 TEST(Cli, SurveysASquareAsATableOrAsJson) {
-  const std::string table = said({"survey", "--area", "0,0,2", "--coast", "1"}, kDone);
+  const std::string table = said({"survey", "--area", "0,0,0.1", "--coast", "0"}, kDone);
   EXPECT_THAT(table, testing::HasSubstr("\nland "));
   const std::string json = said({"survey", "--area", "0,0,2", "--coast", "1", "--json"}, kDone);
   EXPECT_TRUE(json.starts_with("{\"world\":\"default\"")) << json.substr(0, 60);
@@ -214,8 +203,14 @@ TEST(Cli, SurveysASquareAsATableOrAsJson) {
 
 TEST(Cli, DrawsAGalleryOfSmallFiles) {
   const Scratch scratch;
-  EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64"}), kDone);
+  EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64", "--only", "scales"}), kDone);
   EXPECT_EQ(content(scratch / "scales.png").substr(1, 3), "PNG");
+  EXPECT_EQ(content(scratch / "octaves.png"), "") << "nobody asked for it";
+  EXPECT_EQ(talus({"gallery", scratch / "", "--only", "scale"}), kUsage);
+  // Its cliffs are drawn as `talus view` draws them.
+  if (!test::kIsSanitized) {
+    EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64"}), kDone);
+  }
   EXPECT_EQ(talus({"gallery", scratch / "absent", "--size", "64"}), kFailed);
   EXPECT_EQ(talus({"gallery", scratch / "", "--size", "64", "--worlds", scratch / "absent"}), kFailed);
 }

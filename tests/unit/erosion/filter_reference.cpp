@@ -7,7 +7,7 @@
 
 #include "core/base/hash.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 namespace {
 
 double sat(double t) {
@@ -158,4 +158,4 @@ ErosionPoint erode_by_frequency_reference(const ErosionControls& c, double x_m, 
   return out;
 }
 
-}  // namespace talus::testing
+}  // namespace talus::test

@@ -4,7 +4,7 @@
 
 #include "core/erosion/filter.hpp"
 
-namespace talus::testing {
+namespace talus::test {
 
 struct ErosionPoint {
   double height_m = 0, slope_x = 0, slope_z = 0, ridge = 0;
@@ -18,4 +18,4 @@ ErosionPoint erode_reference(const ErosionControls& controls, double x_m, double
 ErosionPoint erode_by_frequency_reference(const ErosionControls& controls, double x_m, double z_m, double slope_x,
                                           double slope_z, double fade_target, double strength);
 
-}  // namespace talus::testing
+}  // namespace talus::test

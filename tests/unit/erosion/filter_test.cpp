@@ -50,7 +50,7 @@ struct Errors {
 
 Errors errors_against_reference(const ErosionControls& controls, Case& c) {
   c.run(controls);
-  const auto reference = c.frequency.empty() ? testing::erode_reference : testing::erode_by_frequency_reference;
+  const auto reference = c.frequency.empty() ? test::erode_reference : test::erode_by_frequency_reference;
   Errors e;
   for (int k = 0; k < c.grid.depth; ++k) {
     for (int i = 0; i < c.grid.width; ++i) {
@@ -89,7 +89,7 @@ TEST(ErosionFilter, AgreesWithTheFormulasInDoublePrecision) {
 
 TEST(ErosionFilter, AgreesWithTheFormulasForRandomControls) {
   const std::uint64_t seed = 20'261;
-  testing::Random random(seed);
+  test::Random random(seed);
   for (int round = 0; round < 12; ++round) {
     ErosionControls controls;
     controls.scale_m = random.real(200, 2000);
@@ -246,7 +246,7 @@ TEST(ErosionFilter, GivesTheSameBitsOnEveryTarget) {
   Case best({1'000'000'000, -999'999'999, 7, 35, 35, 1});
   best.set_frequency(0.4f);
   best.run(ErosionControls{});
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     Case c(best.grid);
     c.set_frequency(0.4f);
     c.run(ErosionControls{});

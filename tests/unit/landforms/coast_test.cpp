@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 90210;
+constexpr std::uint64_t kCoastSeed = 90210;
 
 /// A plane of raw heights that rises along x, as the stage meets it and as it leaves it.
 struct Shore {
@@ -78,13 +78,13 @@ TEST(Coast, KeepsTheOrderOfHeightsInAColumnAndItsBound) {
   most.cliff_vary_m = 37;
   most.fin_m = 15;
   most.joint_m = 1.5;
-  testing::Random random(kSeed);
+  test::Random random(kCoastSeed);
   for (int round = 0; round < 60; ++round) {
     const ColumnGrid grid{random.whole(-1'000'000, 1'000'000), random.whole(-1'000'000, 1'000'000), 1, 1, 1, 1};
     double last = -1e9;
     for (double raw = -140; raw < 480; raw += 1.7) {
       const Shore s(most, grid, 0.15f, static_cast<float>(raw));
-      ASSERT_GT(s.at(0, 0), last) << "raw height " << raw << ", seed " << kSeed << ", round " << round;
+      ASSERT_GT(s.at(0, 0), last) << "raw height " << raw << ", seed " << kCoastSeed << ", round " << round;
       last = s.at(0, 0);
       const glm::dvec2 bound = coast_bound(most, {raw, raw});
       ASSERT_GE(last, bound.x - 1e-4) << raw;
@@ -146,7 +146,7 @@ TEST(Coast, GivesGentleShoresABarAFaceABermAndADuneFoot) {
 TEST(Coast, GivesTheSameBitsOnEveryTarget) {
   const ColumnGrid grid{-5'000'000'123, 77, 3, 35, 9, 1};
   const Shore best(cliffs_everywhere(), grid, 0.2f, -9.0f);
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Shore s(cliffs_everywhere(), grid, 0.2f, -9.0f);
     for (int k = 0; k < grid.depth; ++k) {
       const auto row = s.index(0, k);

@@ -14,7 +14,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 1883;
+constexpr std::uint64_t kConeSeed = 1883;
 
 /// Level ground at sea level with cones on it.
 struct Ground {
@@ -100,7 +100,7 @@ TEST(Cones, TouchNothingBeyondTheirReach) {
 
 TEST(Cones, AreFoundFromEveryColumnTheyReach) {
   const ConeControls controls;
-  testing::Random random(kSeed);
+  test::Random random(kConeSeed);
   std::vector<ConeSite> all;
   std::vector<ConeSite> near;
   std::vector<Cone> cones;
@@ -119,7 +119,7 @@ TEST(Cones, AreFoundFromEveryColumnTheyReach) {
         };
         find_cone_sites(controls, {at(cone.x_m), at(cone.z_m), 1, 1, 1, 1}, near);
         ASSERT_TRUE(std::ranges::any_of(near, [&](const ConeSite& s) { return s.hash == site.hash; }))
-            << "seed " << kSeed << ", round " << round;
+            << "seed " << kConeSeed << ", round " << round;
       }
     }
   }
@@ -227,7 +227,7 @@ TEST(Cones, GiveTheSameBitsOnEveryTarget) {
   ColumnGrid grid = around(cones[0], 1.4);
   grid.depth = 90;
   const Ground best(cones, grid);
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Ground g(cones, grid);
     for (int k = 0; k < grid.depth; ++k) {
       const auto row = g.index(0, k);

@@ -126,7 +126,7 @@ TEST(Detail, DependsOnThePointAndNotOnTheGridOrTarget) {
   for (int k = 0; k < 2; ++k) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(part.at(i, k), whole.at(i + 11, k + 7));
   }
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Patch p(slope, grid);
     for (int k = 0; k < grid.depth; ++k) {
       const auto row = p.index(0, k);

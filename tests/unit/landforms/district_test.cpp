@@ -141,7 +141,7 @@ TEST(Landforms, GiveTheSameBitsOnEveryTarget) {
     best.push_back(land.height);
     best.push_back(land.slope_x);
   }
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     std::size_t n = 0;
     for (const Named& form : landforms()) {
       Land land(grid);

@@ -2,20 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "tests/support/random.hpp"
 
 namespace talus::client {
 namespace {
 
-using Kind = LengthReader::Event::Kind;
 using Bytes = std::vector<std::byte>;
-
-Bytes noise(std::size_t size) {
-  std::mt19937_64 random(size);
-  Bytes out(size);
-  for (std::byte& b : out) b = static_cast<std::byte>(random());
-  return out;
-}
+using test::noise;
 
 TEST(LengthReader, GivesBackWhatWasFramedHoweverItIsCut) {
   const std::vector<std::size_t> sizes{1, 0, 255, 256, 65'536, 3};
@@ -30,7 +23,7 @@ TEST(LengthReader, GivesBackWhatWasFramedHoweverItIsCut) {
     for (std::size_t at = 0; at < stream.size(); at += cut) {
       reader.feed(std::span(stream).subspan(at, std::min(cut, stream.size() - at)));
       while (const auto event = reader.next()) {
-        ASSERT_EQ(event->kind, Kind::kMessage);
+        ASSERT_EQ(event->kind, LengthReader::Event::Kind::kMessage);
         messages.emplace_back(event->bytes.begin(), event->bytes.end());
       }
     }
@@ -45,7 +38,7 @@ TEST(LengthReader, RefusesALengthBeforeItsBytesCome) {
   reader.feed(head);
   const auto event = reader.next();
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, Kind::kFault);
+  EXPECT_EQ(event->kind, LengthReader::Event::Kind::kFault);
   EXPECT_FALSE(event->fault.empty());
   reader.feed(head);
   EXPECT_FALSE(reader.next()) << "nothing is read behind a fault";

@@ -4,11 +4,14 @@
 
 #include <random>
 
+#include "tests/support/random.hpp"
+
 namespace talus::client {
 namespace {
 
 using Kind = FrameReader::Event::Kind;
 using Bytes = std::vector<std::byte>;
+using test::noise;
 
 Bytes bytes_of(std::initializer_list<int> values) {
   Bytes out;
@@ -30,13 +33,6 @@ Bytes server_frame(int first, const Bytes& payload) {
     for (int shift = 56; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(size >> shift));
   }
   out.insert(out.end(), payload.begin(), payload.end());
-  return out;
-}
-
-Bytes noise(std::size_t size) {
-  std::mt19937_64 random(size);
-  Bytes out(size);
-  for (std::byte& b : out) b = static_cast<std::byte>(random());
   return out;
 }
 

@@ -7,13 +7,12 @@
 #include <array>
 #include <set>
 
+#include "tests/support/default_world.hpp"
+
 namespace talus {
 namespace {
 
-const WorldFunction& world() {
-  static const WorldFunction one{Manifest()};
-  return one;
-}
+using test::world;
 
 std::vector<std::uint8_t> drawn(const MapView& view, const MapStyle& style = {}) {
   MapScratch scratch;

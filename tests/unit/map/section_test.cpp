@@ -5,13 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "tests/support/default_world.hpp"
+
 namespace talus {
 namespace {
 
-const WorldFunction& world() {
-  static const WorldFunction one{Manifest()};
-  return one;
-}
+using test::world;
 
 struct Cut {
   SectionView view;

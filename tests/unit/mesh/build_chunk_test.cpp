@@ -16,9 +16,9 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 31;
+constexpr std::uint64_t kChunkSeed = 31;
 
-using testing::random_surface_key;
+using test::random_surface_key;
 
 bool same_mesh(const ChunkMesh& a, const ChunkMesh& b) {
   const auto bytes = [](const auto& x, const auto& y) {
@@ -30,7 +30,7 @@ bool same_mesh(const ChunkMesh& a, const ChunkMesh& b) {
 
 TEST(BuildChunk, GivesTheSameMeshWhateverWasBuiltBefore) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   ChunkScratch used;
   ChunkMesh again;
   for (int round = 0; round < 60; ++round) {
@@ -39,19 +39,19 @@ TEST(BuildChunk, GivesTheSameMeshWhateverWasBuiltBefore) {
     ChunkMesh first;
     const ChunkKind kind = build_chunk(world, key, fresh, first);
     EXPECT_EQ(build_chunk(world, key, used, again), kind);
-    ASSERT_TRUE(same_mesh(first, again)) << "seed " << kSeed << ", round " << round;
+    ASSERT_TRUE(same_mesh(first, again)) << "seed " << kChunkSeed << ", round " << round;
   }
 }
 
 TEST(BuildChunk, GivesTheSameBitsOnEveryTarget) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   for (int round = 0; round < 8; ++round) {
     const ChunkKey key = random_surface_key(world, random, round);
     ChunkScratch scratch;
     ChunkMesh best;
     build_chunk(world, key, scratch, best);
-    const int targets = testing::for_each_simd_target([&](const char* target) {
+    const int targets = test::for_each_simd_target([&](const char* target) {
       ChunkMesh mesh;
       build_chunk(world, key, scratch, mesh);
       EXPECT_TRUE(same_mesh(mesh, best)) << target;
@@ -62,7 +62,7 @@ TEST(BuildChunk, GivesTheSameBitsOnEveryTarget) {
 
 TEST(BuildChunk, PutsNoVertexTwiceAndNoTriangleFlat) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   ChunkScratch scratch;
   ChunkMesh mesh;
   std::size_t triangles = 0;
@@ -92,7 +92,7 @@ TEST(BuildChunk, PutsNoVertexTwiceAndNoTriangleFlat) {
 
 TEST(BuildChunk, SaysAirAndRockWhereThereIsNoSurface) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   ChunkScratch scratch;
   ChunkMesh mesh;
   for (int round = 0; round < 40; ++round) {
@@ -107,7 +107,7 @@ TEST(BuildChunk, SaysAirAndRockWhereThereIsNoSurface) {
 
 TEST(BuildChunk, PointsNormalsAwayFromRock) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   ChunkScratch scratch;
   ChunkMesh mesh;
   std::size_t triangles = 0;
@@ -130,7 +130,7 @@ TEST(BuildChunk, PointsNormalsAwayFromRock) {
 
 TEST(BuildChunk, ClosesItsSurfaceButForTheChunksFaces) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kChunkSeed);
   ChunkScratch scratch;
   ChunkMesh mesh;
   int edges_seen = 0;
@@ -149,7 +149,7 @@ TEST(BuildChunk, ClosesItsSurfaceButForTheChunksFaces) {
       bool on_face = false;
       for (int axis = 0; axis < 3; ++axis)
         on_face = on_face || (a[axis] == b[axis] && (a[axis] == 0 || a[axis] == 32 * kStepsPerCell));
-      ASSERT_TRUE(on_face) << "a hole inside the chunk, seed " << kSeed << ", round " << round;
+      ASSERT_TRUE(on_face) << "a hole inside the chunk, seed " << kChunkSeed << ", round " << round;
     }
     edges_seen += static_cast<int>(edges.size());
   }

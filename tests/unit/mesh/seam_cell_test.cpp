@@ -15,7 +15,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 512;
+constexpr std::uint64_t kCellSeed = 512;
 /// Steps along a fine edge, and along a side of the coarse cell.
 constexpr int kFine = 64;
 constexpr int kSide = 2 * kFine;
@@ -66,7 +66,7 @@ struct Cell {
   }
 };
 
-Cell random_cell(unsigned pattern, testing::Random& random) {
+Cell random_cell(unsigned pattern, test::Random& random) {
   Cell out;
   for (std::size_t i = 0; i < 9; ++i) out.rock[i] = ((pattern >> i) & 1U) != 0;
   const auto fill = [&](auto& values) {
@@ -161,7 +161,7 @@ Chain sum(const Chain& a, const Chain& b) {
 }
 
 TEST(SeamCell, IsBoundedByTheDifferenceOfTheTwoSectionsInAllPatterns) {
-  testing::Random random(kSeed);
+  test::Random random(kCellSeed);
   for (unsigned pattern = 0; pattern < kSeamPatterns; ++pattern) {
     for (int round = 0; round < 8; ++round) {
       const Cell cell = random_cell(pattern, random);
@@ -169,13 +169,13 @@ TEST(SeamCell, IsBoundedByTheDifferenceOfTheTwoSectionsInAllPatterns) {
       const auto places = cell.places();
       const Chain strip = in_steps(outline_of(seam_triangles(pattern, places), places));
       const Chain difference = sum(outline_of(coarse_rock(cell), 1), outline_of(fine_rock(cell), -1));
-      ASSERT_EQ(strip, difference) << "pattern " << pattern << ", round " << round << ", seed " << kSeed;
+      ASSERT_EQ(strip, difference) << "pattern " << pattern << ", round " << round << ", seed " << kCellSeed;
     }
   }
 }
 
 TEST(SeamCell, UsesEverySegmentOfBothContoursOnceAndEveryDiagonalTwice) {
-  testing::Random random(kSeed);
+  test::Random random(kCellSeed);
   for (unsigned pattern = 0; pattern < kSeamPatterns; ++pattern) {
     for (int round = 0; round < 10; ++round) {
       const Cell cell = random_cell(pattern, random);
@@ -196,7 +196,7 @@ TEST(SeamCell, UsesEverySegmentOfBothContoursOnceAndEveryDiagonalTwice) {
 }
 
 TEST(SeamCell, IsEmptyWhereBothSectionsAreTheSame) {
-  testing::Random random(kSeed);
+  test::Random random(kCellSeed);
   EXPECT_EQ(seam_triangles(0, {}).count, 0U);
   EXPECT_EQ(seam_triangles(kSeamPatterns - 1, {}).count, 0U);
   // One corner of rock, cut off at one place by both: nothing lies between.

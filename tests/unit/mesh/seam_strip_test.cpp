@@ -9,13 +9,14 @@
 
 #include "core/mesh/build_chunk.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/surface_key.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 77;
+constexpr std::uint64_t kStripSeed = 77;
 
 /// A vertex with all that travels with it, in steps of the finer lattice.
 using FullVertex = std::array<std::int64_t, 8>;
@@ -29,7 +30,7 @@ FullVertex full(const ChunkMesh& mesh, std::size_t v, int scale, const glm::ivec
 
 /// Edges with a direction, by place alone; how often each is walked, less how often backwards.
 using Place = std::array<std::int64_t, 3>;
-using Chain = std::map<std::pair<Place, Place>, int>;
+using FaceEdges = std::map<std::pair<Place, Place>, int>;
 
 Place place(const ChunkMesh& mesh, std::size_t v, int scale, const glm::ivec3& shift) {
   const FullVertex f = full(mesh, v, scale, shift);
@@ -37,7 +38,7 @@ Place place(const ChunkMesh& mesh, std::size_t v, int scale, const glm::ivec3& s
 }
 
 /// Adds the edges of `mesh` that lie in the plane where coordinate `axis` is `at`.
-void add_edges(Chain& chain, const ChunkMesh& mesh, int scale, const glm::ivec3& shift, int axis, int at) {
+void add_edges(FaceEdges& chain, const ChunkMesh& mesh, int scale, const glm::ivec3& shift, int axis, int at) {
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     const Place from = place(mesh, mesh.indices[i], scale, shift);
     const Place to = place(mesh, mesh.indices[i - i % 3 + (i + 1) % 3], scale, shift);
@@ -76,12 +77,12 @@ class SeamStrip : public ::testing::Test {
  protected:
   template <class Body>
   void for_random_faces(int rounds, Body body) {
-    testing::Random random(kSeed);
+    test::Random random(kStripSeed);
     for (int round = 0; round < rounds; ++round) {
-      const ChunkKey key = testing::random_surface_key(world_, random, static_cast<int>(random.whole(1, 8)));
+      const ChunkKey key = test::random_surface_key(world_, random, static_cast<int>(random.whole(1, 8)));
       const auto face = kAllChunkFaces[static_cast<std::size_t>(round) % kChunkFaces];
-      SCOPED_TRACE(::testing::Message() << "seed " << kSeed << ", round " << round << ": " << key.lod << '/' << key.x
-                                        << '/' << key.y << '/' << key.z << '/'
+      SCOPED_TRACE(::testing::Message() << "seed " << kStripSeed << ", round " << round << ": " << key.lod << '/'
+                                        << key.x << '/' << key.y << '/' << key.z << '/'
                                         << kChunkFaceNames[static_cast<std::size_t>(face)]);
       body(key, face);
       if (HasFatalFailure()) return;
@@ -94,12 +95,12 @@ class SeamStrip : public ::testing::Test {
 TEST_F(SeamStrip, ClosesEveryEdgeInsideItsFaceAndBetweenTheMeshes) {
   int strips = 0;
   std::size_t triangles = 0;
-  for_random_faces(240, [&](const ChunkKey& key, ChunkFace face) {
+  for_random_faces(test::rounds(240), [&](const ChunkKey& key, ChunkFace face) {
     const Neighbourhood n = neighbourhood(world_, key, face);
     const int edge = 2 * world_.cells() * kStepsPerCell;
     const int axis = axis_of(face);
     const int at = is_high(face) ? edge : 0;
-    Chain chain;
+    FaceEdges chain;
     add_edges(chain, n.coarse, 2, {}, axis, at);
     for (std::size_t i = 0; i < 4; ++i) add_edges(chain, n.fine[i], 1, n.fine_shift[i], axis, at);
     add_edges(chain, n.strip, 1, {}, axis, at);
@@ -119,11 +120,11 @@ TEST_F(SeamStrip, ClosesEveryEdgeInsideItsFaceAndBetweenTheMeshes) {
     triangles += n.strip.triangles();
   });
   RecordProperty("triangles", static_cast<int>(triangles));
-  EXPECT_GT(strips, 80) << "too few faces were crossed to prove anything";
+  EXPECT_GT(strips, test::rounds(80)) << "too few faces were crossed to prove anything";
 }
 
 TEST_F(SeamStrip, HasOnlyVerticesOfTheTwoMeshesWithTheirNormalsAndMaterials) {
-  for_random_faces(60, [&](const ChunkKey& key, ChunkFace face) {
+  for_random_faces(test::rounds(60), [&](const ChunkKey& key, ChunkFace face) {
     const Neighbourhood n = neighbourhood(world_, key, face);
     std::map<FullVertex, int> known;
     for (std::size_t v = 0; v < n.coarse.positions.size(); ++v) ++known[full(n.coarse, v, 2, {})];
@@ -143,7 +144,7 @@ TEST_F(SeamStrip, IsTheSameOnEveryTargetAndWhateverWasBuiltBefore) {
   };
   for_random_faces(12, [&](const ChunkKey& key, ChunkFace face) {
     const ChunkMesh first = neighbourhood(world_, key, face).strip;
-    testing::for_each_simd_target([&](const char* target) {
+    test::for_each_simd_target([&](const char* target) {
       ChunkMesh again;
       build_strip(world_, key, face, columns, used, again);
       EXPECT_EQ(again.positions, first.positions) << target;

@@ -10,7 +10,7 @@
 namespace talus {
 namespace {
 
-using testing::random_surface_key;
+using test::random_surface_key;
 
 HeightTile height_of(const WorldFunction& world, const ChunkKey& key) {
   ColumnBlock columns;
@@ -22,7 +22,7 @@ HeightTile height_of(const WorldFunction& world, const ChunkKey& key) {
 
 TEST(HeightTile, LiesWithinHalfAStepOfTheColumns) {
   const WorldFunction world{Manifest()};
-  testing::Random random(71);
+  test::Random random(71);
   for (int round = 0; round < 20; ++round) {
     const ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, kLodMax)));
     ColumnBlock columns;
@@ -39,7 +39,7 @@ TEST(HeightTile, LiesWithinHalfAStepOfTheColumns) {
 
 TEST(HeightTile, SharesItsBorderWithItsNeighbour) {
   const WorldFunction world{Manifest()};
-  testing::Random random(72);
+  test::Random random(72);
   for (int round = 0; round < 10; ++round) {
     const ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, kLodMax)));
     const HeightTile a = height_of(world, key);
@@ -68,7 +68,7 @@ void expect_signs_of_mesh(const DensityTile& tile, const SignRows& signs) {
 
 TEST(DensityTile, HasTheSignsAndCrossingsOfTheMesh) {
   const WorldFunction world{Manifest()};
-  testing::Random random(73);
+  test::Random random(73);
   int meshes = 0;
   for (int round = 0; round < 30; ++round) {
     const ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, kLodMax)));

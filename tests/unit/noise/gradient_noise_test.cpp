@@ -97,7 +97,7 @@ TEST(GradientNoise, IsAsRoughAMillionKilometresAwayAsAtTheOrigin) {
 TEST(GradientNoise, GivesTheSameBitsOnEveryTarget) {
   const ColumnGrid grid{-5'000'000'123, 77, 3, 35, 35, 1};
   const Field best(kNoise, grid);
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Field f(kNoise, grid);
     for (int k = 0; k < grid.depth; ++k) {
       const auto row = f.index(0, k);

@@ -14,7 +14,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 77;
+constexpr std::uint64_t kFieldSeed = 77;
 
 MacroField field_of(std::uint64_t seed) {
   PlateControls plates;
@@ -54,7 +54,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST(MacroField, GivesAColumnTheSameBitsInEveryGridAtEveryStepWhateverIsRemembered) {
   const MacroField field = field_of(1);
-  testing::Random random(kSeed);
+  test::Random random(kFieldSeed);
   MacroScratch used;
   for (int round = 0; round < 120; ++round) {
     const std::int64_t step = std::int64_t{1} << random.whole(0, 12);
@@ -68,7 +68,7 @@ TEST(MacroField, GivesAColumnTheSameBitsInEveryGridAtEveryStepWhateverIsRemember
     const int k = static_cast<int>(random.whole(0, grid.depth - 1));
     MacroScratch fresh;
     const Sampled one = sampled(field, {grid.x_voxel + i * step, grid.z_voxel + k * step, 1, 1, 1, 1.0}, fresh);
-    ASSERT_TRUE(same_bits(one.column(0, 0), many.column(i, k))) << "seed " << kSeed << ", round " << round;
+    ASSERT_TRUE(same_bits(one.column(0, 0), many.column(i, k))) << "seed " << kFieldSeed << ", round " << round;
   }
 }
 
@@ -78,7 +78,7 @@ TEST(MacroField, GivesTheSameBitsOnEveryTarget) {
     const ColumnGrid grid{9'999'000 * step, -10'000'000 * step, step, 35, 20, 1.0};
     MacroScratch scratch;
     const Sampled best = sampled(field, grid, scratch);
-    const int targets = testing::for_each_simd_target([&](const char* target) {
+    const int targets = test::for_each_simd_target([&](const char* target) {
       MacroScratch fresh;
       const Sampled here = sampled(field, grid, fresh);
       for (int k = 0; k < 20; ++k) {
@@ -96,7 +96,7 @@ ColumnGrid metre_nodes(const glm::i64vec2& at_m, int width, int depth) {
 
 TEST(MacroField, HasTheSlopesThatItsHeightsHave) {
   const MacroField field = field_of(3);
-  testing::Random random(kSeed);
+  test::Random random(kFieldSeed);
   MacroScratch scratch;
   double worst = 0;
   int steep = 0;
@@ -122,7 +122,7 @@ TEST(MacroField, HasTheSlopesThatItsHeightsHave) {
 
 TEST(MacroField, InterpolatesSlopesThatItsColumnsHave) {
   const MacroField field = field_of(3);
-  testing::Random random(kSeed);
+  test::Random random(kFieldSeed);
   MacroScratch scratch;
   for (int round = 0; round < 100; ++round) {
     const std::int64_t x = random.whole(-400'000, 400'000);
@@ -219,7 +219,7 @@ TEST(MacroField, HasTheSameDetailABillionMetresAway) {
   MacroScratch scratch;
   // Bends over 64 m, averaged over many places so that land and sea, ranges and plains weigh alike.
   const auto roughness = [&](std::int64_t centre) {
-    testing::Random random(kSeed);
+    test::Random random(kFieldSeed);
     double sum = 0;
     int equal = 0;
     int count = 0;

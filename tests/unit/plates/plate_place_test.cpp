@@ -123,7 +123,7 @@ TEST(PlatePlace, ChangesOwnerOnlyWhereItsFaultIs) {
   PlateControls controls;
   controls.seed = 5;
   const PlateBuilder builder(controls, MacroControls{});
-  testing::Random random(5);
+  test::Random random(5);
   PlateMemo memo;
   int crossings = 0;
   for (int n = 0; n < 40; ++n) {

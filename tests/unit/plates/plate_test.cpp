@@ -16,7 +16,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 1912;
+constexpr std::uint64_t kPlateSeed = 1912;
 
 PlateBuilder builder_of(std::uint64_t seed) {
   PlateControls plates;
@@ -36,7 +36,7 @@ std::vector<Site> sites_around(const PlateSites& sites, const glm::i64vec2& squa
 /// Plates here and there in several worlds, some of them 10^9 m away.
 template <class Visit>
 void for_some_plates(Visit visit) {
-  testing::Random random(kSeed);
+  test::Random random(kPlateSeed);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const PlateBuilder builder = builder_of(seed);
     const std::int64_t reach = seed % 2 == 0 ? 20 : 30'000;
@@ -53,7 +53,7 @@ float displacement(const Plate& plate, const PlateFault& fault, float t) {
 }
 
 TEST(PlateSites, LeaveNoPlaceFartherThanTheirReach) {
-  testing::Random random(kSeed);
+  test::Random random(kPlateSeed);
   PlateControls controls;
   controls.jitter = 0.9;
   const PlateSites sites(controls, MacroControls{});
@@ -190,7 +190,7 @@ TEST(PlateFault, BendsWithinItsKite) {
 TEST(PlateMemo, GivesThePlateThatIsBuiltAndKnowsWorldsApart) {
   const PlateBuilder one = builder_of(1);
   const PlateBuilder two = builder_of(2);
-  testing::Random random(kSeed);
+  test::Random random(kPlateSeed);
   PlateMemo memo;
   for (int n = 0; n < 200; ++n) {
     const PlateBuilder& builder = n % 3 == 0 ? two : one;
@@ -207,7 +207,7 @@ TEST(PlateFault, HasTheSameCurveOnEveryTarget) {
   const PlateBuilder builder = builder_of(3);
   Plate best;
   builder.build(sites_around(builder.sites(), {5, 5}, 0)[0].key, best);
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     Plate plate;
     builder.build(best.seat.site.key, plate);
     ASSERT_EQ(std::memcmp(plate.curves.data(), best.curves.data(), best.curves.size() * sizeof(float)), 0) << target;

@@ -14,8 +14,6 @@
 namespace talus::protocol {
 namespace {
 
-const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
-
 TEST(DracoCodec, GivesBackEveryTriangleAtItsExactPlace) {
   for (const int speed : {0, 3, 5, 7, 10}) {
     for (const int cells : {16, 32}) {

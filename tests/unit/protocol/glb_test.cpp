@@ -11,8 +11,6 @@
 namespace talus::protocol {
 namespace {
 
-const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
-
 std::vector<std::byte> encoded(const ChunkMesh& mesh, const glm::dvec3& translation_m) {
   const GlbPart part{mesh, kUnit, translation_m};
   return *encode_glb(std::span(&part, 1), {0, 1, 2, 3});

@@ -13,7 +13,7 @@
 namespace talus::protocol {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 struct Golden {
   View view;
@@ -43,16 +43,16 @@ std::vector<Golden> goldens() {
   return out;
 }
 
-Json json_of(const Golden& golden) {
+OrderedJson json_of(const Golden& golden) {
   std::vector<ChunkKey> keys;
   interest_area(golden.view, golden.shape, keys);
   std::ranges::sort(keys);
   const auto vec = [](const auto& v, int n) {
-    Json out = Json::array();
+    OrderedJson out = OrderedJson::array();
     for (int i = 0; i < n; ++i) out.push_back(v[i]);
     return out;
   };
-  Json list = Json::array();
+  OrderedJson list = OrderedJson::array();
   for (const ChunkKey& key : keys) list.push_back({key.lod, key.x, key.y, key.z});
   return {{"shape",
            {{"cells", golden.shape.cells},

@@ -12,6 +12,8 @@
 
 #include "protocol/limits.hpp"
 
+#include "tests/support/rounds.hpp"
+
 namespace talus::protocol {
 namespace {
 
@@ -106,7 +108,7 @@ TEST(InterestArea, HoldsNothingButLeavesInReach) {
 }
 
 TEST(InterestArea, HasNeighboursThatDifferByAtMostOneLod) {
-  for (const auto& [view, shape] : cases(24, kSeed + 2)) {
+  for (const auto& [view, shape] : cases(test::rounds(24), kSeed + 2)) {
     const std::vector<ChunkKey> leaves = area(view, shape);
     const std::unordered_set<ChunkKey, ChunkKeyHash> known(leaves.begin(), leaves.end());
     // A leaf may not touch (by face, edge or corner) a leaf two LODs coarser: such a one would hold a neighbour's
@@ -158,7 +160,7 @@ TEST(ClampedView, IsFiniteAndWithinLimitsWhateverCame) {
   std::mt19937_64 random(kSeed);
   const auto pick = [&] { return odd[random() % odd.size()]; };
   const WorldShape shape;
-  for (int round = 0; round < 20'000; ++round) {
+  for (int round = 0; round < test::rounds(20'000); ++round) {
     const View view{
         {pick(), pick(), pick()}, {pick(), pick(), pick()}, {pick(), pick(), pick()}, pick(), pick(), pick()};
     const View out = clamped(view, shape);

@@ -18,7 +18,6 @@
 namespace talus::protocol {
 namespace {
 
-const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
 const MeshLattice kSmall = mesh_lattice({0, 0, 0, 0}, 16, 1.0);
 
 TEST(MeshoptCodec, GivesBackEveryTriangleAtItsExactPlace) {

@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "core/mesh/chunk_mesh.hpp"
+#include "protocol/mesh_codec.hpp"
 
 namespace talus::protocol {
+
+/// That of a chunk of LOD 0.
+inline const MeshLattice kUnit = mesh_lattice({0, 0, 0, 0}, 32, 1.0);
 
 /// A closed height field over the whole chunk, every vertex on the lattice; `seed` moves its waves.
 ChunkMesh sample_surface(int cells, unsigned seed);

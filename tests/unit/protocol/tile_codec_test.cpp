@@ -13,7 +13,7 @@ namespace {
 
 constexpr ChunkKey kKey{3, -7, 0, kChunkLimit};
 
-HeightTile random_height(testing::Random& random, int cells, std::int64_t spread) {
+HeightTile random_height(test::Random& random, int cells, std::int64_t spread) {
   HeightTile tile{cells, 0.125, {}, {}, {}};
   for (int i = 0; i < (cells + 1) * (cells + 1); ++i) {
     tile.heights.push_back(static_cast<std::int32_t>(random.whole(-spread, spread)));
@@ -23,7 +23,7 @@ HeightTile random_height(testing::Random& random, int cells, std::int64_t spread
   return tile;
 }
 
-DensityTile random_density(testing::Random& random, int cells, int spread) {
+DensityTile random_density(test::Random& random, int cells, int spread) {
   DensityTile tile{cells, 0.0625, {}, {}};
   for (int i = 0; i < (cells + 1) * (cells + 1) * (cells + 1); ++i) {
     tile.densities.push_back(static_cast<std::int16_t>(random.whole(-spread, spread - 1)));
@@ -33,7 +33,7 @@ DensityTile random_density(testing::Random& random, int cells, int spread) {
 }
 
 TEST(TileCodec, GivesHeightsBackWhateverTheirSpread) {
-  testing::Random random(7);
+  test::Random random(7);
   for (const std::int64_t spread : {std::int64_t{0}, std::int64_t{3}, std::int64_t{40'000}, std::int64_t{1} << 31}) {
     for (const int cells : {1, 2, 32, kTileCellsMax}) {
       HeightTile tile = random_height(random, cells, std::min<std::int64_t>(spread, (std::int64_t{1} << 31) - 1));
@@ -49,7 +49,7 @@ TEST(TileCodec, GivesHeightsBackWhateverTheirSpread) {
 }
 
 TEST(TileCodec, GivesDensitiesBackWhateverTheyAre) {
-  testing::Random random(8);
+  test::Random random(8);
   for (const int spread : {1, 60, kDensityHeld}) {
     for (const int cells : {1, 2, 32}) {
       const DensityTile tile = random_density(random, cells, spread);
@@ -63,7 +63,7 @@ TEST(TileCodec, GivesDensitiesBackWhateverTheyAre) {
 }
 
 TEST(TileCodec, RefusesEveryStrictPrefixAndAnythingBehind) {
-  testing::Random random(9);
+  test::Random random(9);
   auto height = *encode_height(random_height(random, 4, 100), kKey);
   auto density = *encode_density(random_density(random, 4, 100), kKey);
   for (std::size_t size = 0; size < height.size(); ++size) {
@@ -79,7 +79,7 @@ TEST(TileCodec, RefusesEveryStrictPrefixAndAnythingBehind) {
 }
 
 TEST(TileCodec, RefusesHeadersThatPromiseWhatNoTileHas) {
-  testing::Random random(10);
+  test::Random random(10);
   const auto height = *encode_height(random_height(random, 4, 100), kKey);
   struct Change {
     std::size_t at;
@@ -96,7 +96,7 @@ TEST(TileCodec, RefusesHeadersThatPromiseWhatNoTileHas) {
 }
 
 TEST(TileCodec, RefusesDensitiesBeyondWhatIsHeld) {
-  testing::Random random(11);
+  test::Random random(11);
   DensityTile tile = random_density(random, 2, kDensityHeld);
   tile.densities[13] = std::numeric_limits<std::int16_t>::max();
   EXPECT_FALSE(decode_density(*encode_density(tile, kKey)));

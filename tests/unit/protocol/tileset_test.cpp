@@ -135,7 +135,7 @@ TEST(Tileset, HalvesErrorsThatFollowTheCells) {
 }
 
 TEST(Tileset, CoversTheSquareThatIsAskedForWhereverItIs) {
-  testing::Random random(91);
+  test::Random random(91);
   for (int round = 0; round < 50; ++round) {
     const glm::dvec2 origin{random.real(-1e9, 1e9), random.real(-1e9, 1e9)};
     const double km = random.real(0.01, kTilesetKmMax);

@@ -216,7 +216,7 @@ TEST(FairQueue, RemembersNoMoreClientsThanItMust) {
 TEST(FairQueue, LosesAndDoublesNothing) {
   constexpr std::uint64_t kSeed = 4711;
   SCOPED_TRACE("seed " + std::to_string(kSeed));
-  talus::testing::Random random(kSeed);
+  talus::test::Random random(kSeed);
   FairQueue queue(20);
   std::vector<std::shared_ptr<Job>> queued;
   const auto lane = [&] { return static_cast<Lane>(random.whole(0, 3)); };

@@ -1,7 +1,6 @@
 #include "server/storage/disk_cache.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 
 #include "server/observe/log.hpp"
 #include "server/storage/sqlite.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace talus::server {
 namespace {
@@ -28,14 +28,10 @@ class HandClock final : public Clock {
 
 class DiskCacheTest : public testing::Test {
  protected:
-  DiskCacheTest() : folder(fs::temp_directory_path() / ("talus-disk-" + std::to_string(::getpid()))) {
-    set_log_level(LogLevel::kOff);
-    fs::remove_all(folder);
-  }
-  ~DiskCacheTest() override { fs::remove_all(folder); }
+  DiskCacheTest() { set_log_level(LogLevel::kOff); }
 
   std::expected<std::unique_ptr<DiskCache>, std::string> try_open(std::size_t bytes_max = 64 * kMiB) {
-    return DiskCache::open({folder.string(), bytes_max, 4}, clock, metrics);
+    return DiskCache::open({folder.path().string(), bytes_max, 4}, clock, metrics);
   }
   std::unique_ptr<DiskCache> open(std::size_t bytes_max = 64 * kMiB) {
     auto cache = try_open(bytes_max);
@@ -44,14 +40,14 @@ class DiskCacheTest : public testing::Test {
   }
   /// Runs SQL behind the cache's back.
   void tamper(const std::string& sql) {
-    auto database = Database::open((folder / "chunks.sqlite").string(), Database::Mode::kReadWrite);
+    auto database = Database::open(folder / "chunks.sqlite", Database::Mode::kReadWrite);
     ASSERT_TRUE(database.has_value());
     const auto done = database->execute(sql.c_str());
     ASSERT_TRUE(done.has_value()) << done.error().message;
   }
   std::uint64_t count(Count which) const { return metrics.value(which); }
 
-  fs::path folder;
+  const test::ScratchFolder folder;
   HandClock clock;
   Metrics metrics;
 };
@@ -164,7 +160,7 @@ TEST_F(DiskCacheTest, ShrinksWhenItsBoundIsLowered) {
 }
 
 TEST_F(DiskCacheTest, BeginsAnewWhenTheFileIsNotOneOfOurs) {
-  fs::create_directories(folder);
+  fs::create_directories(folder.path());
   std::ofstream(folder / "chunks.sqlite") << std::string(20000, 'x');
   {
     const auto cache = open();
@@ -185,7 +181,7 @@ TEST_F(DiskCacheTest, MayBeDeletedWhileItIsUsed) {
     const auto cache = open();
     cache->store("a", 2, payload(1));
     cache->flush();
-    fs::remove_all(folder);
+    fs::remove_all(folder.path());
     for (std::size_t i = 0; i < 200; ++i) cache->store(name_of(i), 2, payload(i));
     cache->flush();
   }

@@ -30,7 +30,7 @@ TEST(LayerSet, FindsTheLayerThatABinarySearchFinds) {
     const auto at = std::ranges::upper_bound(tops, depth);
     return std::max(static_cast<int>(at - tops.begin()) - 1, 0);
   };
-  testing::Random random(9);
+  test::Random random(9);
   for (int n = 0; n < 100'000; ++n) {
     const auto depth = static_cast<float>(random.real(-100, static_cast<double>(kStackDepth) + 100));
     ASSERT_EQ(set.index_at(depth), slow(depth)) << depth;
@@ -44,13 +44,13 @@ TEST(LayerSet, FindsTheLayerThatABinarySearchFinds) {
 TEST(LayerSearch, FindsForManyDepthsWhatOneSearchFindsOnEveryTarget) {
   const LayerSet set(5);
   const LayerSearch search(set);
-  testing::Random random(10);
+  test::Random random(10);
   std::vector<float> depths;
   for (int n = 0; n < 20'003; ++n) {
     depths.push_back(static_cast<float>(random.real(-100, static_cast<double>(kStackDepth) + 100)));
   }
   for (int i = 0; i <= kLayers; ++i) depths.push_back(set.top_m(i));
-  testing::for_each_simd_target([&](const char* target) {
+  test::for_each_simd_target([&](const char* target) {
     std::vector<std::int32_t> layers(depths.size());
     search.find(depths, layers);
     for (std::size_t n = 0; n < depths.size(); ++n) ASSERT_EQ(layers[n], set.index_at(depths[n])) << target;
@@ -59,7 +59,7 @@ TEST(LayerSearch, FindsForManyDepthsWhatOneSearchFindsOnEveryTarget) {
 
 TEST(LayerSet, GivesEachRockItsProbability) {
   const LayerSet set(5);
-  testing::Random random(3);
+  test::Random random(3);
   for (const int index : {0, 17, 900, kLayers - 1}) {
     const Layer& layer = set.layer(index);
     int first = 0;

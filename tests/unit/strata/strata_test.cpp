@@ -98,7 +98,7 @@ TEST(Strata, MakesHardBedsSteeperThanSoftOnes) {
 
 TEST(Strata, KeepsTheRockOfALayerInPatches) {
   const Strata strata = strata_of(1.6f);
-  testing::Random random(12);
+  test::Random random(12);
   int near_changes = 0;
   int far_changes = 0;
   for (int n = 0; n < 4'000; ++n) {
@@ -117,7 +117,7 @@ TEST(Strata, KeepsTheRockOfALayerInPatches) {
 TEST(Strata, ShowsAWideCellTheRockThatMostOfItIsMadeOf) {
   const Strata strata = strata_of(1.6f);
   const LayerSet& set = strata.set(4);
-  testing::Random random(21);
+  test::Random random(21);
   for (int n = 0; n < 300; ++n) {
     const double span = static_cast<double>(16 << (n % 6));
     const double depth = std::floor(random.real(300, 4'800));
@@ -148,7 +148,7 @@ TEST(Strata, GivesTheSameBitsOnEveryTarget) {
     return row;
   };
   const Row best = run();
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const Row row = run();
     EXPECT_EQ(row.height, best.height) << target;
     EXPECT_EQ(row.hardness, best.hardness) << target;

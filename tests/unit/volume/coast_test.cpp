@@ -11,8 +11,8 @@ namespace talus {
 namespace {
 
 using cli::RockBlock;
-using testing::CliffCoast;
-using testing::MadeUpVolume;
+using test::CliffCoast;
+using test::MadeUpVolume;
 
 constexpr std::int64_t kBottom_m = -14;
 constexpr int kHeight_m = 110;

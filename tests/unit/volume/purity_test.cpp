@@ -7,13 +7,14 @@
 #include "tests/support/cliff_coast.hpp"
 #include "tests/support/made_up_volume.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 #include "tests/support/simd_targets.hpp"
 
 namespace talus {
 namespace {
 
-using testing::CliffCoast;
-using testing::MadeUpVolume;
+using test::CliffCoast;
+using test::MadeUpVolume;
 
 constexpr std::uint64_t kSeed = 3;
 constexpr std::int64_t kLow_m = -32;
@@ -30,7 +31,7 @@ struct Box {
   int layers;
 };
 
-Box coast_box(testing::Random& random, int lod, double voxel_m) {
+Box coast_box(test::Random& random, int lod, double voxel_m) {
   const std::int64_t step = std::int64_t{1} << lod;
   const auto voxels = [&](double metres) { return static_cast<std::int64_t>(metres / voxel_m) / step * step; };
   const int columns = lod < 3 ? 33 : 12;
@@ -45,11 +46,11 @@ TEST(Volume, GivesALatticePointTheSameBitsFromEveryLodAndGrid) {
   for (const double voxel_m : {1.0, 0.5}) {
     CliffCoast coast(kSeed, voxel_m);
     const MadeUpVolume volume(coast);
-    testing::Random random(kSeed);
+    test::Random random(kSeed);
     MadeUpVolume::Memory used;
     int carved = 0;
     int jutting = 0;
-    for (int round = 0; round < 56; ++round) {
+    for (int round = 0; round < test::rounds(56); ++round) {
       const int lod = round % 7;
       const Box box = coast_box(random, lod, voxel_m);
       const auto coarse = volume.columns(box.grid, used);
@@ -76,8 +77,8 @@ TEST(Volume, GivesALatticePointTheSameBitsFromEveryLodAndGrid) {
         jutting += fine.jut[static_cast<std::size_t>(row_stride(one)) + static_cast<std::size_t>(n)] > 0.0f ? 1 : 0;
       }
     }
-    EXPECT_GT(carved, 40) << "too little of the coast was carved to compare";
-    EXPECT_GT(jutting, 40);
+    EXPECT_GT(carved, test::rounds(40)) << "too little of the coast was carved to compare";
+    EXPECT_GT(jutting, test::rounds(40));
   }
 }
 
@@ -132,7 +133,7 @@ TEST(Volume, GivesTheSameBitsOnEveryTarget) {
     return volume.sample(columns, -8, 40, memory);
   };
   const std::vector<float> best = run();
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     const std::vector<float> values = run();
     EXPECT_EQ(std::memcmp(values.data(), best.data(), best.size() * sizeof(float)), 0) << target;
   });

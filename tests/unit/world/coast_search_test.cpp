@@ -6,11 +6,12 @@
 
 #include "core/world/world_function.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 1848;
+constexpr std::uint64_t kSearchSeed = 1848;
 
 /// Looks along a profile of 1 m steps for a wall: from within 5 m of the sea up by 30 m with slope 1.5 throughout.
 bool has_wall(const ColumnBlock& block, int row) {
@@ -43,13 +44,13 @@ bool has_beach(const ColumnBlock& block, int row) {
 
 TEST(CoastSearch, FindsBeachesAndWallsThatRiseThirtyMetresStraightFromTheSea) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kSearchSeed);
   ColumnBlock rough;
   ColumnBlock fine;
   int shores = 0;
   int walls = 0;
   int beaches = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < test::rounds(400); ++round) {
     // A row of 160 columns 64 m apart; every shore on it is looked at closely.
     const std::int64_t x = random.whole(-40'000'000, 40'000'000);
     const std::int64_t z = random.whole(-40'000'000, 40'000'000);
@@ -64,9 +65,9 @@ TEST(CoastSearch, FindsBeachesAndWallsThatRiseThirtyMetresStraightFromTheSea) {
       beaches += has_beach(fine, 0) ? 1 : 0;
     }
   }
-  EXPECT_GT(shores, 100) << "seed " << kSeed;
-  EXPECT_GT(walls, shores / 10) << "of " << shores << " shores, seed " << kSeed;
-  EXPECT_GT(beaches, shores / 20) << "of " << shores << " shores, seed " << kSeed;
+  EXPECT_GT(shores, test::rounds(100)) << "seed " << kSearchSeed;
+  EXPECT_GT(walls, shores / 10) << "of " << shores << " shores, seed " << kSearchSeed;
+  EXPECT_GT(beaches, shores / 20) << "of " << shores << " shores, seed " << kSearchSeed;
   RecordProperty("shores", shores);
   RecordProperty("walls", walls);
   RecordProperty("beaches", beaches);

@@ -7,13 +7,13 @@
 
 #include <glm/geometric.hpp>
 
+#include "tests/support/default_world.hpp"
+#include "tests/support/rounds.hpp"
+
 namespace talus {
 namespace {
 
-const WorldFunction& world() {
-  static const WorldFunction one{Manifest()};
-  return one;
-}
+using test::world;
 
 /// The density between LOD 0 samples at a place in metres, from a brick apart from the rays'.
 double density_at(const glm::dvec3& p) {
@@ -35,7 +35,7 @@ TEST(Ray, HitsWhereTheDensityIsZeroAndPassesThroughAirBefore) {
   std::uniform_real_distribution<double> place(-20'000, 20'000);
   DensityBrick brick;
   int hits = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < test::rounds(30); ++i) {
     const glm::dvec3 from{place(random), 1800, place(random)};
     const glm::dvec3 direction = random_direction(random);
     const auto hit = cast_ray(world(), from, direction, 4000, brick);
@@ -49,7 +49,7 @@ TEST(Ray, HitsWhereTheDensityIsZeroAndPassesThroughAirBefore) {
       ASSERT_GT(density_at(hit->position_m - direction * back), 0) << i << ": " << back << " m before the hit";
     }
   }
-  EXPECT_GT(hits, 10);
+  EXPECT_GT(hits, test::rounds(10));
 }
 
 TEST(Ray, StraightDownMeetsTheHeightOfItsColumn) {

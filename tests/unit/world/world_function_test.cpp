@@ -14,7 +14,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 4711;
+constexpr std::uint64_t kWorldSeed = 4711;
 
 std::size_t index(const ColumnBlock& block, int i, int k) {
   return static_cast<std::size_t>(k) * block.stride + static_cast<std::size_t>(i);
@@ -30,7 +30,7 @@ bool same_column(const ColumnBlock& a, int ai, int ak, const ColumnBlock& b, int
 
 TEST(WorldFunction, GivesAColumnTheSameBitsInEveryGridAndAtEveryLod) {
   const WorldFunction world{Manifest()};
-  testing::Random random(kSeed);
+  test::Random random(kWorldSeed);
   ColumnBlock one;
   ColumnBlock many;
   for (int round = 0; round < 200; ++round) {
@@ -43,7 +43,7 @@ TEST(WorldFunction, GivesAColumnTheSameBitsInEveryGridAndAtEveryLod) {
     const int i = static_cast<int>(random.whole(0, grid.width - 1));
     const int k = static_cast<int>(random.whole(0, grid.depth - 1));
     world.columns({grid.x_voxel + i * step, grid.z_voxel + k * step, 1, 1, 1, 1.0}, one);
-    ASSERT_TRUE(same_column(one, 0, 0, many, i, k)) << "seed " << kSeed << ", round " << round;
+    ASSERT_TRUE(same_column(one, 0, 0, many, i, k)) << "seed " << kWorldSeed << ", round " << round;
   }
 }
 
@@ -52,7 +52,7 @@ TEST(WorldFunction, GivesTheSameBitsOnEveryTarget) {
   const ColumnGrid grid{999'999'000, -1'000'000'123, 2, 35, 35, 1.0};
   ColumnBlock best;
   world.columns(grid, best);
-  const int targets = testing::for_each_simd_target([&](const char* target) {
+  const int targets = test::for_each_simd_target([&](const char* target) {
     ColumnBlock block;
     world.columns(grid, block);
     for (int k = 0; k < 35; ++k) {
@@ -89,7 +89,7 @@ TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
     manifest.values[parameter_index(off)] = 0;
   manifest.values[parameter_index("coast.shelf")] = 1;
   const WorldFunction world{manifest};
-  testing::Random random(kSeed);
+  test::Random random(kWorldSeed);
   ColumnBlock block;
   int steep = 0;
   for (int round = 0; round < 300; ++round) {
@@ -98,8 +98,8 @@ TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
     const std::size_t middle = index(block, 4, 4);
     const double x = (height(8, 4) - height(0, 4)) / 8;
     const double z = (height(4, 8) - height(4, 0)) / 8;
-    ASSERT_NEAR(x, static_cast<double>(block.slope_x[middle]), 0.01) << "seed " << kSeed << ", round " << round;
-    ASSERT_NEAR(z, static_cast<double>(block.slope_z[middle]), 0.01) << "seed " << kSeed << ", round " << round;
+    ASSERT_NEAR(x, static_cast<double>(block.slope_x[middle]), 0.01) << "seed " << kWorldSeed << ", round " << round;
+    ASSERT_NEAR(z, static_cast<double>(block.slope_z[middle]), 0.01) << "seed " << kWorldSeed << ", round " << round;
     steep += std::hypot(x, z) > 0.1 ? 1 : 0;
   }
   EXPECT_GT(steep, 20) << "nothing had a slope";
@@ -108,7 +108,7 @@ TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
 TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
   const WorldFunction world{Manifest()};
   const glm::dvec2 range = world.height_range_m();
-  testing::Random random(kSeed);
+  test::Random random(kWorldSeed);
   ColumnBlock block;
   for (int round = 0; round < 60; ++round) {
     world.columns({random.whole(-2'000'000'000, 2'000'000'000), random.whole(-60'000, 60'000), 1, 128, 16, 0.25},
@@ -120,7 +120,7 @@ TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
         ASSERT_LE(height, range.y);
         if (i > 0) {
           const double rise = std::abs(height - static_cast<double>(block.height_m[index(block, i - 1, k)]));
-          ASSERT_LT(rise, 0.25 * 8.0) << "a wall steeper than 8 : 1, seed " << kSeed << ", round " << round;
+          ASSERT_LT(rise, 0.25 * 8.0) << "a wall steeper than 8 : 1, seed " << kWorldSeed << ", round " << round;
         }
       }
     }

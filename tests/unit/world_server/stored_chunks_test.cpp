@@ -1,7 +1,7 @@
 #include "server/world/stored_chunks.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -12,18 +12,16 @@ namespace fs = std::filesystem;
 
 class StoredChunksTest : public testing::Test {
  protected:
-  StoredChunksTest() : folder(fs::temp_directory_path() / ("talus-stored-chunks-" + std::to_string(::getpid()))) {
-    fs::remove_all(folder);
+  StoredChunksTest() {
     worlds.push_back(std::make_unique<const World>(Manifest{}));
     name.key = {3, 1, 0, -2};
   }
-  ~StoredChunksTest() override { fs::remove_all(folder); }
 
   /// A process of one version of the generator on this disk; what it stores is on the disk when it ends.
   template <typename Act>
   void as_version(std::uint32_t version, Act act) {
     StoredChunks chunks(worlds, version);
-    auto disk = DiskCache::open({folder.string(), 1 << 20, 1}, clock, metrics);
+    auto disk = DiskCache::open({folder.path().string(), 1 << 20, 1}, clock, metrics);
     ASSERT_TRUE(disk.has_value()) << disk.error();
     chunks.attach(std::move(*disk));
     act(chunks);
@@ -41,7 +39,7 @@ class StoredChunksTest : public testing::Test {
     return out;
   }
 
-  fs::path folder;
+  const test::ScratchFolder folder;
   Worlds worlds;
   SystemClock clock;
   Metrics metrics;

@@ -7,6 +7,8 @@
 #include "server/world/place_query.hpp"
 #include "server/world/terrain_builder.hpp"
 
+#include "tests/support/rounds.hpp"
+
 namespace talus::server {
 namespace {
 
@@ -18,8 +20,9 @@ TEST(TerrainBuilder, GivesTheBytesOfBuildAndEncodeWhateverWasBuiltBefore) {
   Metrics metrics;
   TerrainBuilder builder(worlds, clock, metrics, 1);
   int meshes = 0;
+  const std::int32_t last_x = test::kIsSanitized ? -1 : 1;
   for (const std::int32_t lod : {2, 5}) {
-    for (std::int32_t x = -1; x <= 1; ++x) {
+    for (std::int32_t x = -1; x <= last_x; ++x) {
       for (std::int32_t y = -8; y < 24; ++y) {
         const ChunkKey key{lod, x, y, 3};
         PayloadName name;
@@ -36,7 +39,7 @@ TEST(TerrainBuilder, GivesTheBytesOfBuildAndEncodeWhateverWasBuiltBefore) {
       }
     }
   }
-  EXPECT_GT(meshes, 5);
+  EXPECT_GT(meshes, test::rounds(5));
 }
 
 TEST(TerrainBuilder, MakesATileOfEveryLodOfOneMesh) {
@@ -45,7 +48,7 @@ TEST(TerrainBuilder, MakesATileOfEveryLodOfOneMesh) {
   const SystemClock clock;
   Metrics metrics;
   TerrainBuilder builder(worlds, clock, metrics, 1);
-  for (std::int32_t lod = 0; lod <= kLodMax; ++lod) {
+  for (std::int32_t lod = 0; lod <= kLodMax; lod += test::kIsSanitized ? 3 : 1) {
     for (const std::int32_t x : {-1, 3}) {
       PayloadName name;
       name.format = PayloadFormat::kTile;
@@ -72,7 +75,7 @@ TEST(TerrainBuilder, GivesTheBytesOfAStripWhateverWasBuiltBefore) {
     world.columns(chunk_columns(world, key), out);
   };
   int strips = 0;
-  for (std::int32_t y = -4; y < 12; ++y) {
+  for (std::int32_t y = test::kIsSanitized ? 0 : -4; y < (test::kIsSanitized ? 4 : 12); ++y) {
     for (const ChunkFace face : kAllChunkFaces) {
       PayloadName name;
       name.format = PayloadFormat::kStrip;
@@ -93,7 +96,7 @@ TEST(TerrainBuilder, GivesTheBytesOfAStripWhateverWasBuiltBefore) {
       EXPECT_EQ(decoded->triangles(), mesh.triangles()) << "flat triangles are kept";
     }
   }
-  EXPECT_GE(strips, 4);
+  EXPECT_GE(strips, test::rounds(4));
   PayloadName finest;
   finest.format = PayloadFormat::kStrip;
   EXPECT_TRUE(builder.build(finest, 0, CancelToken{})->bytes.empty()) << "nothing is finer than LOD 0";
