@@ -1,10 +1,14 @@
 #include "client_sample/cli/files.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,6 +21,31 @@ struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using File = std::unique_ptr<std::FILE, Close>;
+
+/// An open file, or nothing (errno says why).
+class Descriptor {
+ public:
+  Descriptor(const std::string& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  explicit operator bool() const { return number_ >= 0; }
+  bool write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(number_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+  }
+  bool sync() const { return ::fsync(number_) == 0; }
+  bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
+
+ private:
+  int number_;
+};
 
 void complain(std::string_view verb, const std::string& path) {
   fmt::print(stderr, "talus: cannot {} {}: {}\n", verb, path, std::strerror(errno));
@@ -53,6 +82,28 @@ bool store_file(const std::string& path, std::string_view bytes) {
   const bool is_closed = std::fclose(file.release()) == 0;
   if (!is_written || !is_closed) complain("write", path);
   return is_written && is_closed;
+}
+
+bool replace_file(const std::string& path, std::string_view bytes) {
+  namespace fs = std::filesystem;
+  std::error_code fault;
+  const bool is_there = fs::exists(path, fault);
+  if (is_there && !fs::is_regular_file(path, fault)) return store_file(path, bytes);
+  // Where a link leads to, so that the link stays one.
+  const fs::path target = is_there ? fs::canonical(path, fault) : fs::absolute(path, fault);
+  const std::string beside = target.string() + ".new";
+  Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
+  if (!file) return complain("write", beside), false;
+  // The bytes reach the disk before the name does; a name of bytes that do not would be an empty file after a power
+  // cut.
+  if (!file.write(bytes) || !file.sync() || !file.close() || std::rename(beside.c_str(), target.c_str()) != 0) {
+    complain("write", target.string());
+    ::unlink(beside.c_str());
+    return false;
+  }
+  const Descriptor folder(target.parent_path().string(), O_RDONLY | O_DIRECTORY);
+  if (folder) folder.sync();  // where a folder cannot be, the old file may come back: whole as well
+  return true;
 }
 
 std::expected<Manifest, ExitCode> load_manifest(const std::string& path) {

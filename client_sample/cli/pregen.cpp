@@ -2,7 +2,8 @@
 //
 // It is one more viewer: it wants chunks by name over the stream, a batch at a time, and so has one client's share of
 // the server; people who play meanwhile keep theirs. What arrives is dropped. After every batch the count of columns
-// that are done goes into the progress file; a run with the same file, world and area goes on from there.
+// that are done goes into the progress file, whole or not at all; a run with the same file, world and area goes on from
+// there.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -53,7 +54,7 @@ class ProgressFile {
     return std::unexpected(kFailed);
   }
   bool store(std::uint64_t done) const {
-    return path_.empty() || store_file(path_, fmt::format("{}\n{}\n", what_, done));
+    return path_.empty() || replace_file(path_, fmt::format("{}\n{}\n", what_, done));
   }
 
  private:
