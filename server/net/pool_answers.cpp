@@ -42,7 +42,7 @@ Awaitable<HttpAnswer> PoolAnswers::make(Route route, ClientId client) {
     world = tileset.world;
     question = [place = tileset.place](const World& of) { return tileset_answer(of, place); };
   }
-  co_return co_await query(world, client, std::move(question));
+  co_return co_await ask(world, client, std::move(question));
 }
 
 Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
@@ -75,7 +75,7 @@ Awaitable<HttpAnswer> PoolAnswers::chunk(PayloadName name, ClientId client) {
   co_return chunk_answer(std::move(*result), net_.worlds[name.world]->etag(name), name.format);
 }
 
-Awaitable<HttpAnswer> PoolAnswers::query(std::size_t world, ClientId client, Question question) {
+Awaitable<HttpAnswer> PoolAnswers::ask(std::size_t world, ClientId client, Question question) {
   const std::uint64_t asked = ++asked_;
   // Weak: a job that hangs must not keep a connection, nor with it the end of the server; and a job that is the last to
   // know one must not end it on a thread that is not its own.

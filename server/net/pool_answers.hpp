@@ -21,8 +21,14 @@ class PoolAnswers {
   /// Whom these belong to; kept alive while something is under way. Before the first request.
   void belong_to(std::weak_ptr<void> owner) { owner_ = std::move(owner); }
 
-  /// One at a time; of a route that asks the pool. 503 when the pool is full, the work failed, or `give_up` was called.
+  /// What a thread of the pool finds out. It owns what it needs: it may go on after the connection has ended.
+  using Question = std::move_only_function<HttpAnswer(const World&)>;
+
+  /// One at a time; of a route that asks the pool. 503 when the pool is full, the work failed or hangs, or `give_up`
+  /// was called.
   Awaitable<HttpAnswer> make(Route route, ClientId client);
+  /// The same of a question.
+  Awaitable<HttpAnswer> ask(std::size_t world, ClientId client, Question question);
 
   /// Since when something is awaited; nothing when nothing is.
   std::optional<Instant> waiting_since() const { return waiting_since_; }
@@ -30,10 +36,7 @@ class PoolAnswers {
   void give_up();
 
  private:
-  using Question = std::move_only_function<HttpAnswer(const World&)>;
-
   Awaitable<HttpAnswer> chunk(PayloadName name, ClientId client);
-  Awaitable<HttpAnswer> query(std::size_t world, ClientId client, Question question);
   HttpAnswer unavailable(std::string_view code, std::string_view message) const {
     return unavailable_answer(net_.pool.wait_s(), code, message);
   }
