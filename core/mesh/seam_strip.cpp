@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/check.hpp"
+#include "core/mesh/build_chunk.hpp"
 #include "core/mesh/seam_cell.hpp"
 #include "core/mesh/vertex_maker.hpp"
 
@@ -32,41 +33,47 @@ struct FaceFrame {
   bool is_upper;
 };
 
-/// Samples of one lattice on a part of the face; sample (0, 0, 0) is that part's lowest corner.
+/// Samples of one lattice on a part of the face, near the surface and nowhere else; sample (0, 0, 0) is that part's
+/// lowest corner.
 class Section {
  public:
   /// `cells` is how many the part has along y: none for a level face, of which one layer and its neighbours count.
   Section(const WorldFunction& world, VolumeScratch& volume, StripScratch::Lattice& lattice, std::int64_t y_voxel,
           int cells)
-      : layers_(layers(world, volume, lattice.columns, y_voxel, cells)),
-        samples_(sample(world, volume, lattice, y_voxel, layers_)),
+      : layers_(lattice.layers),
+        parts_(parts_of_row(lattice.columns.grid)),
+        samples_(sample(world, volume, lattice, y_voxel, cells)),
         maker_(world, lattice.columns, samples_, y_voxel) {}
   Section(const Section&) = delete;
   Section& operator=(const Section&) = delete;
 
   bool is_rock(const glm::ivec3& at) const {
-    if (at.y < layers_.first) return true;
-    return at.y < layers_.first + layers_.count && samples_.at(at.x, at.y, at.z) < 0.0f;
+    const int part = (at.z + 1) * parts_ + (at.x + 1) / kPartSamples;
+    const LayerInterval& layers = layers_[static_cast<std::size_t>(part)];
+    if (at.y < layers.first) return true;
+    return at.y < layers.first + layers.count && samples_.at(at.x, at.y, at.z) < 0.0f;
   }
   float density(const glm::ivec3& at) const { return samples_.at(at.x, at.y, at.z); }
   MeshVertex vertex(const glm::ivec3& from, int axis) const { return maker_({axis, from.x, from.y, from.z}); }
 
  private:
-  static LayerInterval layers(const WorldFunction& world, VolumeScratch& volume, ColumnBlock& columns,
-                              std::int64_t y_voxel, int cells) {
-    if (!columns.has_volume) world.volume(columns, volume);
-    return layers_near_surface(columns, y_voxel, cells);
-  }
   static Samples sample(const WorldFunction& world, VolumeScratch& volume, StripScratch::Lattice& lattice,
-                        std::int64_t y_voxel, const LayerInterval& layers) {
-    const std::size_t floats = density_floats(lattice.columns.grid, layers.count);
+                        std::int64_t y_voxel, int cells) {
+    ColumnBlock& columns = lattice.columns;
+    if (!columns.has_volume) world.volume(columns, volume);
+    part_spans(world, columns, lattice.spans);
+    const LayerInterval all = layers_near_surface(columns, lattice.spans, y_voxel, cells, lattice.layers);
+    lattice.wanted = lattice.layers;
+    for (LayerInterval& layers : lattice.wanted) layers.first -= all.first;
+    const std::size_t floats = density_floats(columns.grid, all.count);
     lattice.density.resize(std::max(lattice.density.size(), floats));
-    const std::int64_t first_voxel = y_voxel + layers.first * lattice.columns.grid.step_voxel;
-    return {sample_density(world, lattice.columns, first_voxel, layers.count, {}, volume, lattice.density),
-            lattice.density.data(), layers.first};
+    const std::int64_t first_voxel = y_voxel + all.first * columns.grid.step_voxel;
+    return {sample_density(world, columns, first_voxel, all.count, lattice.wanted, volume, lattice.density),
+            lattice.density.data(), all.first};
   }
 
-  LayerInterval layers_;
+  const std::vector<LayerInterval>& layers_;
+  int parts_;
   Samples samples_;
   VertexMaker maker_;
 };
@@ -238,6 +245,8 @@ void build_strip(const WorldFunction& world, const ChunkKey& key, ChunkFace face
                  StripScratch& scratch, ChunkMesh& out) {
   TALUS_CHECK(is_valid(key) && key.lod > 0);
   out.clear();
+  const glm::dvec2 range = world.height_range_m();
+  if (kind_by_heights(world, key, range.x, range.y) != ChunkKind::kMesh) return;
   StripMaker(world, key, face, columns, scratch, out).make();
 }
 

@@ -19,6 +19,8 @@ LayerInterval layers_within(const HeightSpan& span, const ColumnGrid& grid, std:
   const double y_m = static_cast<double>(y_voxel) * grid.voxel_m;
   const auto layer = [&](float height_m) { return std::floor((static_cast<double>(height_m) - y_m) / step_m); };
   const double limit = cells + 1;
+  if (layer(span.high_m) + 1.0 < 0.0) return {-1, 0};
+  if (layer(span.low_m) - 1.0 > static_cast<double>(cells)) return {cells + 2, 0};
   const auto first = static_cast<int>(std::clamp(layer(span.low_m) - 2.0, -1.0, limit));
   const auto last = static_cast<int>(std::clamp(layer(span.high_m) + 3.0, -1.0, limit));
   return {first, last - first + 1};
@@ -26,26 +28,28 @@ LayerInterval layers_within(const HeightSpan& span, const ColumnGrid& grid, std:
 
 }  // namespace
 
-LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells) {
-  return layers_within({columns.rock_below_m, columns.air_above_m}, columns.grid, y_voxel, cells);
-}
-
-LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> rows, std::int64_t y_voxel,
+LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> spans, std::int64_t y_voxel,
                                   int cells, std::vector<LayerInterval>& out) {
-  out.resize(rows.size());
+  out.resize(spans.size());
+  const auto rows = static_cast<std::size_t>(columns.grid.depth);
+  const std::size_t parts = spans.size() / rows;
   LayerInterval all{cells + 1, 0};
   int all_end = -1;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
+  for (std::size_t at = 0; at < spans.size(); ++at) {
     // A row is read for its own vertices, for those of edges towards it and for the normals of both.
-    const std::size_t end = std::min(k + 3, rows.size());
-    HeightSpan near = rows[k];
-    for (std::size_t n = k < 2 ? 0 : k - 2; n < end; ++n)
-      near = {std::min(near.low_m, rows[n].low_m), std::max(near.high_m, rows[n].high_m)};
-    out[k] = layers_within(near, columns.grid, y_voxel, cells);
-    all.first = std::min(all.first, out[k].first);
-    all_end = std::max(all_end, out[k].first + out[k].count);
+    const std::size_t k = at / parts;
+    const std::size_t end = std::min(k + 3, rows);
+    HeightSpan near = spans[at];
+    for (std::size_t n = k < 2 ? 0 : k - 2; n < end; ++n) {
+      const HeightSpan& beside = spans[n * parts + at % parts];
+      near = {std::min(near.low_m, beside.low_m), std::max(near.high_m, beside.high_m)};
+    }
+    out[at] = layers_within(near, columns.grid, y_voxel, cells);
+    if (out[at].count == 0) continue;
+    all.first = std::min(all.first, out[at].first);
+    all_end = std::max(all_end, out[at].first + out[at].count);
   }
-  all.count = all_end - all.first;
+  all.count = std::max(0, all_end - all.first);
   return all;
 }
 

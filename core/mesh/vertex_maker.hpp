@@ -42,10 +42,10 @@ class Samples {
 };
 
 /// Layers of samples that the surface can touch, of -1 .. cells + 1, with two more on either side: one whose sign is
-/// plain, one for normals. Samples below the interval are rock, those above it air. Requires a volume.
-LayerInterval layers_near_surface(const ColumnBlock& columns, std::int64_t y_voxel, int cells);
-/// The same for each row of columns by itself, counted as above; returns all rows' together.
-LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> rows, std::int64_t y_voxel,
+/// plain, one for normals. Samples below the interval are rock, those above it air. Of each row of columns by itself,
+/// or of each part of each row, as `spans` has them (row_spans, part_spans): none where the surface stays a layer away
+/// from 0 .. cells. Returns all together.
+LayerInterval layers_near_surface(const ColumnBlock& columns, std::span<const HeightSpan> spans, std::int64_t y_voxel,
                                   int cells, std::vector<LayerInterval>& out);
 
 struct MeshVertex {

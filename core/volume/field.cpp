@@ -73,27 +73,27 @@ void Field::layer(std::int64_t y_voxel) {
                memory_.rough_y[n]);
 }
 
-void Field::base_row(int k, float* out) {
-  const std::size_t at = static_cast<std::size_t>(k) * stride_;
+void Field::base_row(int k, const Span& span, float* out) {
+  const std::size_t at = static_cast<std::size_t>(k) * stride_ + span.first;
   const float* height = columns_.height_m + at;
   const float* steepness = columns_.steepness + at;
   if (columns_.jut_m == nullptr) {
-    smooth_row(y_m_, height, steepness, width_, out);
+    smooth_row(y_m_, height, steepness, span.size(), out);
     return;
   }
-  profile_.row(columns_.stack_m + at, columns_.choice + at, y_m_, width_, memory_.proud.data());
+  profile_.row(columns_.stack_m + at, columns_.choice + at, y_m_, span.size(), memory_.proud.data());
   const double z_m = static_cast<double>(columns_.grid.z_voxel + k * columns_.grid.step_voxel) * columns_.grid.voxel_m;
   const float still_z = to_still(z_m);
   const float still2 = still_y_ * still_y_ + still_z * still_z;
   const bool is_near = still2 < kWarpStillRadius_m * kWarpStillRadius_m;
   warped_row(y_m_,
-             {height, steepness, columns_.jut_m + at, memory_.proud.data(), is_near ? memory_.still_x.data() : nullptr,
-              still2},
-             width_, out);
+             {height, steepness, columns_.jut_m + at, memory_.proud.data(),
+              is_near ? memory_.still_x.data() + span.first : nullptr, still2},
+             span.size(), out);
 }
 
-/// Joins one sphere to the distances of a row; false where it does not reach it.
-bool Field::carve_row(int k, const CarveSphere& s) {
+/// Joins one sphere to the distances of a part of a row; false where it does not reach it.
+bool Field::carve_row(int k, const CarveSphere& s, const Span& span) {
   const ColumnGrid& grid = columns_.grid;
   const auto metres = [&](std::int64_t voxel) { return static_cast<double>(voxel) * grid.voxel_m; };
   const auto dz = static_cast<float>(metres(grid.z_voxel + k * grid.step_voxel) - s.z_m);
@@ -106,16 +106,18 @@ bool Field::carve_row(int k, const CarveSphere& s) {
   // Samples a little outside cost nothing but time: each asks for itself whether it is within the band.
   const float first = std::floor((-half - dx) / step_m_) - 1.0f;
   const float last = std::floor((half - dx) / step_m_) + 2.0f;
-  if (last <= 0.0f || first >= static_cast<float>(grid.width)) return false;
-  const auto from = static_cast<std::size_t>(std::max(first, 0.0f));
-  const auto end = static_cast<std::size_t>(std::min(last + 1.0f, static_cast<float>(grid.width)));
+  const auto span_first = static_cast<float>(span.first);
+  const auto span_end = static_cast<float>(span.end);
+  if (last <= span_first || first >= span_end) return false;
+  const auto from = static_cast<std::size_t>(std::max(first, span_first));
+  const auto end = static_cast<std::size_t>(std::min(last + 1.0f, span_end));
   sphere_row({dx, step_m_, rest2, s.radius_m, controls_.union_m}, from, end, memory_.carve.data());
   return true;
 }
 
-/// The roughness along a row, or null where no wall is near.
-const float* Field::rough_row(int k) {
-  if (!(controls_.roughness_m > 0.0f) || !any_rough(memory_.carve.data(), width_)) return nullptr;
+/// The roughness along a part of a row, or null where no wall is near.
+const float* Field::rough_row(int k, const Span& span) {
+  if (!(controls_.roughness_m > 0.0f) || !any_rough(memory_.carve.data() + span.first, span.size())) return nullptr;
   std::fill_n(memory_.noise.begin(), stride_, 0.0f);
   const auto z = static_cast<std::size_t>(k);
   for (std::size_t n = 0; n < kRoughOctaves; ++n) {
@@ -128,20 +130,23 @@ const float* Field::rough_row(int k) {
                          {octave.z.cell_hash[0][z], octave.z.cell_hash[1][z]}},
                         width_, kRoughAmplitude[n], memory_.noise.data());
   }
-  return memory_.noise.data();
+  return memory_.noise.data() + span.first;
 }
 
-void Field::row(int k, float* out) {
-  base_row(k, out);
+void Field::part(int k, std::size_t first, std::size_t end, float* out) {
+  const Span span{first, end};
+  out += first;
+  base_row(k, span, out);
   if (memory_.layer_spheres.empty()) return;
-  std::fill_n(memory_.carve.begin(), stride_, kFarAway_m);
+  const std::size_t whole_vectors = (span.size() + kRowPadding - 1) / kRowPadding * kRowPadding;
+  std::fill_n(memory_.carve.begin() + static_cast<std::ptrdiff_t>(first), whole_vectors, kFarAway_m);
   bool is_carved = false;
-  for (const std::uint32_t n : memory_.layer_spheres) is_carved = carve_row(k, columns_.spheres[n]) || is_carved;
+  for (const std::uint32_t n : memory_.layer_spheres) is_carved = carve_row(k, columns_.spheres[n], span) || is_carved;
   if (!is_carved) return;
   const double z_m = static_cast<double>(columns_.grid.z_voxel + k * columns_.grid.step_voxel) * columns_.grid.voxel_m;
-  subtract_row({memory_.carve.data(), memory_.still_x.data(), to_still(z_m), to_pillars(y_m_), rough_row(k),
-                controls_.roughness_m, controls_.blend_m},
-               width_, out);
+  subtract_row({memory_.carve.data() + first, memory_.still_x.data() + first, to_still(z_m), to_pillars(y_m_),
+                rough_row(k, span), controls_.roughness_m, controls_.blend_m},
+               span.size(), out);
 }
 
 }  // namespace talus

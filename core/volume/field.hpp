@@ -54,12 +54,20 @@ class Field {
   /// Chooses the layer that row() samples.
   void layer(std::int64_t y_voxel);
   /// Writes grid.width densities of row `k`, rounded up to whole vectors.
-  void row(int k, float* out);
+  void row(int k, float* out) { part(k, 0, width_, out); }
+  /// Writes those of samples `first` .. `end` - 1 alone, out[0] being the row's first; `first` is a multiple of
+  /// kRowPadding.
+  void part(int k, std::size_t first, std::size_t end, float* out);
 
  private:
-  bool carve_row(int k, const CarveSphere& sphere);
-  void base_row(int k, float* out);
-  const float* rough_row(int k);
+  /// The part of a row that is being written.
+  struct Span {
+    std::size_t first, end;
+    std::size_t size() const { return end - first; }
+  };
+  bool carve_row(int k, const CarveSphere& sphere, const Span& span);
+  void base_row(int k, const Span& span, float* out);
+  const float* rough_row(int k, const Span& span);
 
   const HardnessProfile& profile_;
   const CarveControls& controls_;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -135,6 +138,103 @@ TEST_F(SeamStrip, HasOnlyVerticesOfTheTwoMeshesWithTheirNormalsAndMaterials) {
       ASSERT_TRUE(known.contains(full(n.strip, v, 1, {}))) << "vertex " << v << " is nobody's";
     }
   });
+}
+
+/// Counts the densities that a strip has sampled: all of a lattice's memory is made unset before.
+class SampleCount {
+ public:
+  explicit SampleCount(StripScratch& scratch) : scratch_(scratch) {
+    for (StripScratch::Lattice* lattice : {&scratch_.fine, &scratch_.coarse}) unset(*lattice);
+  }
+  /// Before the next part of a level face is sampled.
+  void next_part() { sum_ += take(scratch_.fine); }
+  std::size_t sum() {
+    next_part();
+    return sum_ += take(scratch_.coarse);
+  }
+
+ private:
+  static constexpr std::size_t kFloatsMax = 80 * 80 * 80;  // more than any face's block has
+  static void unset(StripScratch::Lattice& lattice) {
+    lattice.density.assign(kFloatsMax, std::numeric_limits<float>::quiet_NaN());
+  }
+  static std::size_t take(StripScratch::Lattice& lattice) {
+    const auto set = std::ranges::count_if(lattice.density, [](float value) { return !std::isnan(value); });
+    unset(lattice);
+    return static_cast<std::size_t>(set);
+  }
+
+  StripScratch& scratch_;
+  std::size_t sum_ = 0;
+};
+
+/// Edges of the finer lattice on the face that the surface crosses: the length of its contour, in cells.
+std::size_t contour_length(const Neighbourhood& n, ChunkFace face, int cells) {
+  std::size_t out = 0;
+  for (const ChunkMesh& mesh : n.fine) {
+    for (const auto& position : mesh.positions) {
+      // The finer chunk lies on the other side.
+      if (position[axis_of(face)] == (is_high(face) ? 0 : cells * kStepsPerCell)) ++out;
+    }
+  }
+  return out;
+}
+
+/// Samples of both lattices that a strip takes.
+std::size_t samples_of_strip(const WorldFunction& world, const ChunkKey& key, ChunkFace face) {
+  StripScratch scratch;
+  SampleCount count(scratch);
+  const ColumnLoader columns = [&](const ChunkKey& of, ColumnBlock& block) {
+    if (of.lod < key.lod) count.next_part();
+    world.columns(chunk_columns(world, of), block);
+  };
+  ChunkMesh strip;
+  build_strip(world, key, face, columns, scratch, strip);
+  return count.sum();
+}
+
+/// Whether the surface stays two cells away from the finer chunks across a face, going by the heights of their columns.
+bool is_ruled_out(const WorldFunction& world, const ChunkKey& key, ChunkFace face) {
+  ColumnBlock block;
+  VolumeScratch volume;
+  for (const ChunkKey& finer : finer_across(key, face)) {
+    world.columns(chunk_columns(world, finer), block);
+    world.volume(block, volume);
+    const double away_m = 2.0 * static_cast<double>(block.grid.step_voxel) * world.voxel_m();
+    const double low_m = static_cast<double>(block.rock_below_m) - away_m;
+    const double high_m = static_cast<double>(block.air_above_m) + away_m;
+    if (kind_by_heights(world, finer, low_m, high_m) == ChunkKind::kMesh) return false;
+  }
+  return true;
+}
+
+TEST_F(SeamStrip, SamplesTheLatticesOnlyNearTheContourAndNowhereWhereThereIsNone) {
+  // A contour along a row of samples needs seven layers of it, three samples deep, of both lattices: 32 a cell.
+  constexpr std::size_t kSamplesACell = 48;
+  // Samples are taken 16 at a time; all of both lattices are 17,142.
+  constexpr std::size_t kSamplesAnyway = 4'000;
+  std::array<std::size_t, 3> lengths{};
+  std::array<std::size_t, 3> samples{};
+  int ruled_out = 0;
+  for_random_faces(test::rounds(54), [&](const ChunkKey& key, ChunkFace face) {
+    const std::size_t length = contour_length(neighbourhood(world_, key, face), face, world_.cells());
+    const std::size_t taken = samples_of_strip(world_, key, face);
+    EXPECT_LE(taken, kSamplesACell * length + kSamplesAnyway) << length << " cells long";
+    lengths[static_cast<std::size_t>(axis_of(face))] += length;
+    samples[static_cast<std::size_t>(axis_of(face))] += taken;
+    for (const int up : {-2, 2}) {
+      const ChunkKey other{key.lod, key.x, key.y + up, key.z};
+      if (!is_ruled_out(world_, other, face)) continue;
+      EXPECT_EQ(samples_of_strip(world_, other, face), 0U) << up << " chunks higher";
+      ++ruled_out;
+    }
+  });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_GT(lengths[axis], static_cast<std::size_t>(test::rounds(200)))
+        << "too few contours to judge by, axis " << axis;
+    EXPECT_LE(samples[axis], kSamplesACell * lengths[axis] * 3 / 2) << "axis " << axis;
+  }
+  EXPECT_GT(ruled_out, test::rounds(60));
 }
 
 TEST_F(SeamStrip, IsTheSameOnEveryTargetAndWhateverWasBuiltBefore) {
