@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid/octree_order.hpp"
 #include "protocol/limits.hpp"
 
 namespace talus::protocol {
@@ -48,50 +49,6 @@ double distance2(const glm::dvec3& at, const BoxWorld& box) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-/// One walk down the octree; what every step of it needs.
-class Walk {
- public:
-  Walk(const View& view, const WorldShape& shape, std::vector<ChunkKey>& out)
-      : position_(view.position), shape_(shape), far2_(view.far_m * view.far_m), out_(out) {
-    const double r0 = std::max(view.near_m * std::exp2(-view.lod_bias), kNearEdgesMin * edge_of(shape, 0));
-    for (int lod = 0; lod < kViewLodMax; ++lod) {
-      const double r = r0 * static_cast<double>(1 << lod);
-      radius2_[static_cast<std::size_t>(lod)] = r * r;
-    }
-  }
-
-  void from_roots(double far_m) {
-    const double edge = edge_of(shape_, kViewLodMax);
-    const auto chunk = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / edge)); };
-    const glm::ivec3 low{chunk(position_.x - far_m), chunk(shape_.height_range_m.x), chunk(position_.z - far_m)};
-    const glm::ivec3 high{chunk(position_.x + far_m), chunk(shape_.height_range_m.y), chunk(position_.z + far_m)};
-    for (std::int32_t z = low.z; z <= high.z; ++z) {
-      for (std::int32_t x = low.x; x <= high.x; ++x) {
-        for (std::int32_t y = low.y; y <= high.y; ++y) visit({kViewLodMax, x, y, z});
-      }
-    }
-  }
-
- private:
-  void visit(const ChunkKey& key) {
-    const BoxWorld box = box_of(key, shape_.cells, shape_.voxel_m);
-    const double d2 = distance2(position_, box);
-    if (d2 > far2_) return;
-    if (box.low.y > shape_.height_range_m.y || box.high.y <= shape_.height_range_m.x) return;
-    if (key.lod > 0 && d2 < radius2_[static_cast<std::size_t>(key.lod - 1)]) {
-      for (const ChunkKey& child : children_of(key)) visit(child);
-    } else if (is_valid(key)) {
-      out_.push_back(key);
-    }
-  }
-
-  glm::dvec3 position_;
-  const WorldShape& shape_;
-  double far2_;
-  std::array<double, kViewLodMax> radius2_{};  ///< r(lod)^2
-  std::vector<ChunkKey>& out_;
-};
-
 }  // namespace
 
 double edge_of(const WorldShape& shape, int lod) {
@@ -117,9 +74,63 @@ View clamped(const View& view, const WorldShape& shape) {
   return out;
 }
 
+InterestArea::InterestArea(const View& view, const WorldShape& shape)
+    : shape_(shape), position_(view.position), far_m_(view.far_m) {
+  const double r0 = std::max(view.near_m * std::exp2(-view.lod_bias), kNearEdgesMin * edge_of(shape, 0));
+  for (int lod = 0; lod < kViewLodMax; ++lod) {
+    const double r = r0 * static_cast<double>(1 << lod);
+    radius2_[static_cast<std::size_t>(lod)] = r * r;
+  }
+}
+
+/// What becomes of a node that the walk meets.
+InterestArea::Node InterestArea::node(const ChunkKey& key) const {
+  const BoxWorld box = box_of(key, shape_.cells, shape_.voxel_m);
+  const double d2 = distance2(position_, box);
+  if (d2 > far_m_ * far_m_) return Node::kDropped;
+  if (box.low.y > shape_.height_range_m.y || box.high.y <= shape_.height_range_m.x) return Node::kDropped;
+  if (key.lod > 0 && d2 < radius2_[static_cast<std::size_t>(key.lod - 1)]) return Node::kSplit;
+  return is_valid(key) ? Node::kLeaf : Node::kDropped;
+}
+
+void InterestArea::visit(const ChunkKey& key, std::vector<ChunkKey>& out) const {
+  switch (node(key)) {
+    case Node::kDropped:
+      return;
+    case Node::kLeaf:
+      return out.push_back(key);
+    case Node::kSplit:
+      for (const ChunkKey& child : children_of(key)) visit(child, out);
+  }
+}
+
+void InterestArea::append_leaves(std::vector<ChunkKey>& out) const {
+  const double edge = edge_of(shape_, kViewLodMax);
+  const auto chunk = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / edge)); };
+  const glm::ivec3 low{chunk(position_.x - far_m_), chunk(shape_.height_range_m.x), chunk(position_.z - far_m_)};
+  const glm::ivec3 high{chunk(position_.x + far_m_), chunk(shape_.height_range_m.y), chunk(position_.z + far_m_)};
+  std::vector<ChunkKey> roots;
+  for (std::int32_t z = low.z; z <= high.z; ++z) {
+    for (std::int32_t x = low.x; x <= high.x; ++x) {
+      for (std::int32_t y = low.y; y <= high.y; ++y) roots.push_back({kViewLodMax, x, y, z});
+    }
+  }
+  std::ranges::sort(roots, is_before_in_octree);
+  for (const ChunkKey& root : roots) visit(root, out);
+}
+
+bool InterestArea::has_leaf(const ChunkKey& key) const {
+  if (key.lod > kViewLodMax || node(key) != Node::kLeaf) return false;
+  for (ChunkKey above = key; above.lod < kViewLodMax;) {
+    above = parent_of(above);
+    if (node(above) != Node::kSplit) return false;
+  }
+  return true;
+}
+
 void interest_area(const View& view, const WorldShape& shape, std::vector<ChunkKey>& out) {
   out.clear();
-  Walk(view, shape, out).from_roots(view.far_m);
+  InterestArea(view, shape).append_leaves(out);
 }
 
 double chunk_urgency(const View& view, const WorldShape& shape, const ChunkKey& key) {

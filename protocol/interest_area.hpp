@@ -8,12 +8,15 @@
 // most one: SPEC.md, "Interest area".
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/grid/chunk_key.hpp"
+#include "protocol/limits.hpp"
 
 namespace talus::protocol {
 
@@ -41,7 +44,29 @@ struct View {
 /// place inside the world.
 View clamped(const View& view, const WorldShape& shape);
 
-/// The leaves, in no particular order, without duplicates. Requires a clamped view. `out` is cleared first.
+/// The area of one clamped view: its leaves, and whether a chunk is one of them.
+class InterestArea {
+ public:
+  InterestArea(const View& view, const WorldShape& shape);
+
+  /// Appends the leaves, without duplicates, in the order of the octree (core/grid/octree_order.hpp).
+  void append_leaves(std::vector<ChunkKey>& out) const;
+  /// Whether `key` is a leaf: what the walk would find, without walking. Mostly one distance.
+  bool has_leaf(const ChunkKey& key) const;
+
+ private:
+  enum class Node : std::uint8_t { kDropped, kSplit, kLeaf };
+  Node node(const ChunkKey& key) const;
+  void visit(const ChunkKey& key, std::vector<ChunkKey>& out) const;
+
+  WorldShape shape_;
+  glm::dvec3 position_;
+  double far_m_;
+  std::array<double, kViewLodMax> radius2_{};  ///< r(lod)^2
+};
+
+/// The leaves, without duplicates, in the order of the octree (core/grid/octree_order.hpp). Requires a clamped view.
+/// `out` is cleared first.
 void interest_area(const View& view, const WorldShape& shape, std::vector<ChunkKey>& out);
 
 /// Smaller is sooner: distance over edge, less for what lies ahead. Requires a clamped view.

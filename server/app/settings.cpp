@@ -53,6 +53,7 @@ const std::array kTable{
   SettingInfo{"cold_queue", &of_settings<&S::cold_queue>, 1, 65536, "N", "Chunks that may wait to be made, in each lane: feet, view, cover, background; then 503.", true},
   SettingInfo{"cold_per_client", &of_settings<&S::cold_per_client>, 1, 65536, "N", "Chunks that may wait to be made for one stream, or for one address over HTTP; then 503.", true},
   SettingInfo{"job_s", &of_settings<&S::job_s>, 0.1, 3600, "S", "A chunk or a question whose making takes so long is given up, and its thread replaced; then 503.", true},
+  SettingInfo{"pool_nice", &of_settings<&S::pool_nice>, 0, 19, "N", "How far threads that make terrain stand back for those that talk to peers, and for other programs; 0 not at all.", true},
   SettingInfo{"connections", &of_limits<&L::connections>, 1, 1000000, "N", "Connections in all.", true},
   SettingInfo{"connections_per_address", &of_limits<&L::connections_per_address>, 1, 1000000, "N", "Connections from one address.", true},
   SettingInfo{"request_line_bytes", &of_limits<&L::request_line_bytes>, 256, 65536, "N", "Longest HTTP request line; then 414.", true},
@@ -81,9 +82,9 @@ const std::array kTable{
 // clang-format on
 
 /// What is built once, at the start.
-constexpr std::array<std::string_view, 14> kFixed{
+constexpr std::array<std::string_view, 15> kFixed{
     "world",      "listen", "tcp_listen", "admin_listen",   "threads",    "net_threads", "cache_mib",
-    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s",       "cold_per_client"};
+    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s",       "cold_per_client", "pool_nice"};
 
 bool is_fixed(std::string_view key) {
   return std::find(kFixed.begin(), kFixed.end(), key) != kFixed.end();

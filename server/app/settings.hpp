@@ -38,6 +38,7 @@ struct Settings {
   std::size_t cold_queue = 256;
   std::size_t cold_per_client = 64;
   double job_s = 20;
+  std::size_t pool_nice = 5;
   NetLimits limits;
 };
 

@@ -1,5 +1,7 @@
 #include "server/schedule/job_pool.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -135,6 +137,8 @@ std::size_t JobPool::hanging() const {
 }
 
 void JobPool::run(std::size_t index) {
+  // On Linux "this process" is the calling thread. Making oneself humbler is always allowed, and no more than a wish.
+  if (options_.nice > 0) setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + options_.nice);
   JobRef job;
   Work work;
   while (take(index, job, work)) {

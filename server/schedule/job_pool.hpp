@@ -30,6 +30,7 @@ struct JobPoolOptions {
   std::size_t queued_per_client = 256;
   double job_s = 0;        ///< a job that runs longer is given up; 0: none is
   std::size_t spares = 0;  ///< threads that may take the place of hung ones
+  int nice = 0;            ///< of its threads, 0..19, added to the process's: whoever else wants a processor goes first
 };
 
 /// Who wants a job, how soon, and what it is expected to cost.

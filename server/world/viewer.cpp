@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/grid/octree_order.hpp"
 #include "protocol/limits.hpp"
 
 namespace talus::server {
@@ -27,6 +28,11 @@ constexpr std::size_t kHeldKeysMax = 2 * protocol::kWantedKeysMax;
 
 /// What is not known of a held chunk's faces: any may be reached.
 constexpr std::uint8_t kAllFaces = (1U << kChunkFaces) - 1;
+
+/// Order of the states.
+bool is_before(const Piece& a, const Piece& b) {
+  return a.key != b.key ? is_before_in_octree(a.key, b.key) : a.face < b.face;
+}
 
 /// Order of the heap. Equal urgencies are ordered by piece, so that equal views give equal streams.
 bool is_less_urgent(const WantedPiece& a, const WantedPiece& b) {
@@ -71,11 +77,9 @@ bool Viewer::on_message(const protocol::Message& message) {
   return true;
 }
 
-/// Keeps, of each piece, the most urgent state; all of one piece are in one phase.
+/// Keeps one state of each piece; all of one piece are in one phase and want the same.
 void Viewer::sort_unique(States& states) {
-  std::sort(states.begin(), states.end(), [](const State& a, const State& b) {
-    return a.piece != b.piece ? a.piece < b.piece : a.urgency < b.urgency;
-  });
+  std::sort(states.begin(), states.end(), [](const State& a, const State& b) { return is_before(a.piece, b.piece); });
   const auto end =
       std::unique(states.begin(), states.end(), [](const State& a, const State& b) { return a.piece == b.piece; });
   states.erase(end, states.end());
@@ -83,7 +87,7 @@ void Viewer::sort_unique(States& states) {
 
 Viewer::State* Viewer::find_in(States& states, const Piece& piece) {
   const auto at = std::lower_bound(states.begin(), states.end(), piece,
-                                   [](const State& state, const Piece& p) { return state.piece < p; });
+                                   [](const State& state, const Piece& p) { return is_before(state.piece, p); });
   return at == states.end() || at->piece != piece ? nullptr : &*at;
 }
 
@@ -101,7 +105,7 @@ void Viewer::hold(const protocol::Held& held) {
       known->faces = faces;
       --wanted_;
     } else if (chunks_.size() + fresh.size() < kHeldKeysMax) {
-      fresh.push_back({{chunk.key, {}}, Phase::kHeld, faces, 0.0});
+      fresh.push_back({{chunk.key, {}}, Phase::kHeld, faces});
     }
   }
   chunks_.insert(chunks_.end(), fresh.begin(), fresh.end());
@@ -115,7 +119,7 @@ void Viewer::hold(const protocol::Held& held) {
       known->phase = Phase::kHeld;
       --wanted_;
     } else if (strips_.size() + fresh.size() < kHeldKeysMax) {
-      fresh.push_back({piece, Phase::kHeld, 0, 0.0});
+      fresh.push_back({piece, Phase::kHeld});
     }
   }
   strips_.insert(strips_.end(), fresh.begin(), fresh.end());
@@ -124,34 +128,65 @@ void Viewer::hold(const protocol::Held& held) {
 
 Viewer::States Viewer::target() const {
   States out;
-  if (view_) {
+  if (area_) {
     std::vector<ChunkKey> area;
-    protocol::interest_area(view_->view, shape_, area);
+    area_->append_leaves(area);
     out.reserve(area.size() + want_.size());
-    for (const ChunkKey& key : area) {
-      out.push_back({{key, {}}, Phase::kWanted, 0, protocol::chunk_urgency(view_->view, shape_, key)});
-    }
+    for (const ChunkKey& key : area) out.push_back({{key, {}}, Phase::kWanted, 0, true});
   }
-  for (std::size_t i = 0; i < want_.size(); ++i) out.push_back({{want_[i], {}}, Phase::kWanted, 0, want_urgency(i)});
-  sort_unique(out);
+  States wants;
+  for (std::size_t i = 0; i < want_.size(); ++i)
+    wants.push_back({{want_[i], {}}, Phase::kWanted, 0, false, want_urgency(i)});
+  add_wants(out, std::move(wants));
   return out;
 }
 
+/// Of what is asked for twice, the more urgent; by name, that is the earlier.
+void Viewer::add_wants(States& states, States wants) {
+  if (wants.empty()) return;
+  std::ranges::stable_sort(wants, is_before, &State::piece);
+  States fresh;
+  for (const State& want : wants) {
+    if (State* known = find_in(states, want.piece)) {
+      known->want_urgency = std::min(known->want_urgency, want.want_urgency);
+    } else if (fresh.empty() || fresh.back().piece != want.piece) {
+      fresh.push_back(want);
+    }
+  }
+  const auto middle = states.insert(states.end(), fresh.begin(), fresh.end());
+  std::inplace_merge(states.begin(), middle, states.end(),
+                     [](const State& a, const State& b) { return is_before(a.piece, b.piece); });
+}
+
+/// Of what is held nobody asks, so it is not kept but found when it is needed.
+double Viewer::urgency_of(const State& state) {
+  double urgency = state.want_urgency;
+  if (!state.is_of_view) return urgency;
+  if (!state.piece.face) return std::min(urgency, protocol::chunk_urgency(view_->view, shape_, state.piece.key));
+  const State* chunk = find({state.piece.key, {}});
+  return chunk == nullptr ? urgency : std::min(urgency, kStripUrgency * urgency_of(*chunk));
+}
+
 /// Both are sorted: one walk finds what stays, what comes and what goes.
-void Viewer::merge_into(States& next, Change& change) const {
+void Viewer::merge_into(States& next, Change& change) {
   auto at = next.begin();
   for (const State& old : chunks_) {
-    while (at != next.end() && at->piece < old.piece) ++at;
+    while (at != next.end() && at->piece != old.piece && is_before(at->piece, old.piece)) ++at;
     if (at != next.end() && at->piece == old.piece) {
       at->phase = old.phase;
       at->faces = old.faces;
-      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, at->urgency});
+      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, urgency_of(*at)});
     } else if (old.phase == Phase::kHeld) {
       change.leave.push_back(old.piece.key);
     } else if (old.phase == Phase::kInFlight) {
       change.cancelled.push_back(old.piece);
     }
   }
+}
+
+/// Whether it is among the chunks after a refresh, nearly always without looking for it there.
+bool Viewer::is_of_target(const ChunkKey& key) {
+  return (area_ && area_->has_leaf(key)) || (!want_.empty() && find({key, {}}) != nullptr);
 }
 
 /// Visits the strips that close a held chunk to the coarser chunks of the target around it.
@@ -163,43 +198,45 @@ void Viewer::for_each_strip_of(const State& finer, Visit visit) {
     if ((finer.faces & bit_of(face)) == 0) continue;
     const ChunkKey across = parent_of(neighbour_of(finer.piece.key, face));
     if (across == parent) continue;
-    if (const State* coarser = find({across, {}})) visit(Piece{across, opposite(face)}, coarser->urgency);
+    if (is_of_target(across)) visit(Piece{across, opposite(face)});
   }
 }
 
 /// Every strip that the target needs, as far as it is known.
 Viewer::States Viewer::strips_of_target() {
   States out;
-  for (std::size_t i = 0; i < want_strips_.size(); ++i) {
-    out.push_back({{want_strips_[i].key, want_strips_[i].face}, Phase::kWanted, 0, want_urgency(i)});
-  }
   for (const State& chunk : chunks_) {
-    for_each_strip_of(chunk, [&](const Piece& strip, double urgency) {
-      out.push_back({strip, Phase::kWanted, 0, kStripUrgency * urgency});
-    });
+    for_each_strip_of(chunk, [&](const Piece& strip) { out.push_back({strip, Phase::kWanted, 0, true}); });
   }
   sort_unique(out);
+  States wants;
+  for (std::size_t i = 0; i < want_strips_.size(); ++i) {
+    wants.push_back({{want_strips_[i].key, want_strips_[i].face}, Phase::kWanted, 0, false, want_urgency(i)});
+  }
+  add_wants(out, std::move(wants));
   return out;
 }
 
 /// After the chunks are those of the new target. A held strip goes with its chunk, any other with the need for it. One
 /// that was sent by name while its chunk was not of the target went when the client let that chunk go, which it does
 /// without a word: with the chunk it is wanted again.
-void Viewer::merge_strips(States& before, Change& change) {
+void Viewer::merge_strips(const States& before, Change& change) {
   States next = strips_of_target();
   States kept;
   auto at = next.begin();
+  auto was = before.begin();
   for (const State& old : strips_) {
-    const Piece chunk{old.piece.key, {}};
-    const bool is_of_target = find(chunk) != nullptr;
-    const bool is_lost = old.phase == Phase::kHeld && is_of_target && find_in(before, chunk) == nullptr;
-    while (at != next.end() && at->piece < old.piece) ++at;
+    const ChunkKey& key = old.piece.key;
+    while (was != before.end() && was->piece.key != key && is_before_in_octree(was->piece.key, key)) ++was;
+    const bool is_chunk_wanted = is_of_target(key);
+    const bool is_lost = old.phase == Phase::kHeld && is_chunk_wanted && (was == before.end() || was->piece.key != key);
+    while (at != next.end() && at->piece != old.piece && is_before(at->piece, old.piece)) ++at;
     if (at != next.end() && at->piece == old.piece) {
       at->phase = is_lost ? Phase::kWanted : old.phase;
-      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, at->urgency});
+      if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, urgency_of(*at)});
     } else if (old.phase == Phase::kInFlight) {
       change.cancelled.push_back(old.piece);
-    } else if (old.phase == Phase::kHeld && is_of_target && !is_lost) {
+    } else if (old.phase == Phase::kHeld && is_chunk_wanted && !is_lost) {
       kept.push_back(old);
     }
   }
@@ -210,6 +247,7 @@ void Viewer::merge_strips(States& before, Change& change) {
 
 Viewer::Change Viewer::refresh() {
   Change change;
+  if (is_view_new_) area_.emplace(view_->view, shape_);
   States next = target();
   merge_into(next, change);
   if (is_view_new_) {
@@ -223,7 +261,7 @@ Viewer::Change Viewer::refresh() {
   queue_.clear();
   for (const States* states : {&chunks_, &strips_}) {
     for (const State& state : *states) {
-      if (state.phase == Phase::kWanted) queue_.push_back({state.piece, state.urgency});
+      if (state.phase == Phase::kWanted) queue_.push_back({state.piece, urgency_of(state)});
     }
   }
   std::make_heap(queue_.begin(), queue_.end(), is_less_urgent);
@@ -255,18 +293,19 @@ void Viewer::put_back(const Piece& piece) {
   state->phase = Phase::kWanted;
   --in_flight_;
   ++wanted_;
-  queue_.push_back({piece, state->urgency});
+  queue_.push_back({piece, urgency_of(*state)});
   std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
 }
 
 /// A chunk has just been sent: what closes it to its coarser neighbours is wanted now.
 void Viewer::want_strips_of(const State& finer) {
-  for_each_strip_of(finer, [&](const Piece& strip, double urgency) {
+  for_each_strip_of(finer, [&](const Piece& strip) {
     const auto at = std::lower_bound(strips_.begin(), strips_.end(), strip,
-                                     [](const State& state, const Piece& p) { return state.piece < p; });
+                                     [](const State& state, const Piece& p) { return is_before(state.piece, p); });
     if (at != strips_.end() && at->piece == strip) return;
-    strips_.insert(at, {strip, Phase::kWanted, 0, kStripUrgency * urgency});
-    queue_.push_back({strip, kStripUrgency * urgency});
+    const State wanted{strip, Phase::kWanted, 0, true};
+    strips_.insert(at, wanted);
+    queue_.push_back({strip, urgency_of(wanted)});
     std::push_heap(queue_.begin(), queue_.end(), is_less_urgent);
     ++wanted_;
   });

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
+
+#include "core/grid/octree_order.hpp"
 
 namespace talus {
 namespace {
@@ -28,6 +31,26 @@ TEST(ChunkKey, FillsItsParentExactly) {
   }
   const glm::dvec3 edge = whole.high - whole.low;
   EXPECT_EQ(volume, edge.x * edge.y * edge.z);
+}
+
+/// Every node of the tree below `key`, in the order in which a walk meets them.
+void walk(const ChunkKey& key, std::vector<ChunkKey>& out) {
+  out.push_back(key);
+  if (key.lod == 0) return;
+  for (const ChunkKey& child : children_of(key)) walk(child, out);
+}
+
+TEST(OctreeOrder, IsTheOrderOfAWalkDepthFirst) {
+  for (const ChunkKey& root : {ChunkKey{3, 0, 0, 0}, ChunkKey{3, -1, -1, -1}, ChunkKey{3, 5, -7, kChunkLimit / 8}}) {
+    std::vector<ChunkKey> met;
+    walk(root, met);
+    for (std::size_t i = 0; i < met.size(); i += 7) {
+      for (std::size_t j = 0; j < met.size(); ++j)
+        ASSERT_EQ(is_before_in_octree(met[i], met[j]), i < j) << i << ' ' << j;
+    }
+  }
+  EXPECT_TRUE(is_before_in_octree({3, -1, 0, 0}, {0, 0, 0, 0}));
+  EXPECT_TRUE(is_before_in_octree({kLodMax, -kChunkLimit, 0, 0}, {kLodMax, kChunkLimit, 0, 0}));
 }
 
 TEST(ChunkKey, IsValidUpToTheLimitAndNotBeyond) {

@@ -10,6 +10,8 @@
 #include <set>
 #include <unordered_set>
 
+#include "core/grid/chunk_face.hpp"
+#include "core/grid/octree_order.hpp"
 #include "protocol/limits.hpp"
 
 #include "tests/support/rounds.hpp"
@@ -122,6 +124,32 @@ TEST(InterestArea, HasNeighboursThatDifferByAtMostOneLod) {
           at = parent_of(at);
           ASSERT_FALSE(known.contains(at)) << "LOD " << key.lod << " beside LOD " << at.lod;
         }
+      }
+    }
+  }
+}
+
+TEST(InterestArea, KnowsItsLeavesWithoutWalkingAndGivesThemInTheOrderOfTheOctree) {
+  for (const auto& [view, shape] : cases(24, kSeed + 3)) {
+    const std::vector<ChunkKey> leaves = area(view, shape);
+    const std::unordered_set<ChunkKey, ChunkKeyHash> known(leaves.begin(), leaves.end());
+    EXPECT_TRUE(std::ranges::is_sorted(leaves, is_before_in_octree));
+    const InterestArea tested(view, shape);
+    for (const ChunkKey& key : leaves) {
+      ASSERT_TRUE(tested.has_leaf(key));
+      ChunkKey above = key;
+      while (above.lod < kViewLodMax) {
+        above = parent_of(above);
+        ASSERT_FALSE(tested.has_leaf(above));
+      }
+      if (key.lod > 0) {
+        for (const ChunkKey& child : children_of(key)) ASSERT_FALSE(tested.has_leaf(child));
+      }
+      for (const ChunkFace face : kAllChunkFaces) {
+        const ChunkKey beside = neighbour_of(key, face);
+        ASSERT_EQ(tested.has_leaf(beside), known.contains(beside));
+        const ChunkKey coarser = parent_of(beside);
+        ASSERT_EQ(tested.has_leaf(coarser), known.contains(coarser));
       }
     }
   }

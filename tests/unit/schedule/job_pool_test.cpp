@@ -1,6 +1,7 @@
 #include "server/schedule/job_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -207,6 +208,19 @@ struct Trap {
   std::condition_variable changed;
   bool is_open = false;
 };
+
+TEST(JobPool, RunsItsJobsAsHumblyAsItWasTold) {
+  const int ours = getpriority(PRIO_PROCESS, 0);
+  if (ours > 16) GTEST_SKIP() << "this process is as humble as can be";
+  for (const int nice : {0, 3}) {
+    JobPool pool({.threads = 1, .nice = nice});
+    std::promise<int> theirs;
+    pool.push(terms(Lane::kView, 0.0),
+              [&](const JobPool::Context&) { theirs.set_value(getpriority(PRIO_PROCESS, 0)); });
+    EXPECT_EQ(theirs.get_future().get(), ours + nice);
+  }
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), ours);
+}
 
 TEST(JobPool, GivesUpAJobThatHangsAndServesOnWithANewThread) {
   Trap trap;
