@@ -26,9 +26,10 @@ MemoryCache::Shard& MemoryCache::shard_of(std::uint64_t hash) {
 }
 
 PayloadRef MemoryCache::load(const PayloadName& name) {
-  Shard& shard = shard_of(PayloadNameHash{}(name));
+  const std::size_t hash = PayloadNameHash{}(name);
+  Shard& shard = shard_of(hash);
   const std::lock_guard lock(shard.mutex);
-  const auto found = shard.entries.find(name);
+  const auto found = shard.entries.find(HashedName{name, hash});
   if (found == shard.entries.end()) {
     ++shard.totals.misses;
     return nullptr;

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <unordered_map>
 #include <vector>
@@ -72,9 +73,24 @@ class MemoryCache {
     void push(Entry& entry);
     void unlink(Entry& entry);
   };
+  /// A name whose hash is known: the map does not work it out a second time.
+  struct HashedName {
+    const PayloadName& name;
+    std::size_t hash;
+  };
+  struct NameHash : PayloadNameHash {
+    using is_transparent = void;
+    using PayloadNameHash::operator();
+    std::size_t operator()(const HashedName& hashed) const noexcept { return hashed.hash; }
+  };
+  struct NameEqual : std::equal_to<PayloadName> {
+    using is_transparent = void;
+    using std::equal_to<PayloadName>::operator();
+    bool operator()(const HashedName& a, const PayloadName& b) const { return a.name == b; }
+  };
   struct Shard {
     mutable std::mutex mutex;
-    std::unordered_map<PayloadName, Entry, PayloadNameHash> entries;
+    std::unordered_map<PayloadName, Entry, NameHash, NameEqual> entries;
     Queue small;
     Queue main;
     Totals totals;

@@ -154,6 +154,13 @@ HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat
   return answer;
 }
 
+HttpAnswer metrics_answer(const Metrics& metrics) {
+  HttpAnswer answer;
+  answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
+  answer.text = metrics.text();
+  return answer;
+}
+
 HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place) {
   if (!place) return error_answer(404, "no_land", "near: no dry land within about 130 km");
   HttpAnswer answer = json_answer(fmt::format(R"({{"x":{},"y":{},"z":{}}})", place->x, place->y, place->z));

@@ -50,6 +50,8 @@ Count count_of_refusal(int status);
 /// 200 with the payload (a map tile always is one), or 204 and what fills the chunk (nothing for an empty strip); for
 /// ever cacheable. `etag` must outlive the answer.
 HttpAnswer chunk_answer(PayloadRef payload, std::string_view etag, PayloadFormat format);
+/// All that is counted, as Prometheus reads it.
+HttpAnswer metrics_answer(const Metrics& metrics);
 /// The place as JSON, or 404.
 HttpAnswer spawn_answer(const std::optional<glm::dvec3>& place);
 

@@ -1,29 +1,26 @@
 #include "server/net/http_connection.hpp"
 
-#include <array>
-#include <cstring>
 #include <exception>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "core/base/check.hpp"
 #include "server/net/answer_writer.hpp"
+#include "server/net/head_buffer.hpp"
 #include "server/net/http_answer.hpp"
 #include "server/net/http_request.hpp"
 #include "server/net/pool_answers.hpp"
 #include "server/net/request_id.hpp"
+#include "server/net/stream_admission.hpp"
 #include "server/net/stream_session.hpp"
-#include "server/net/websocket_handshake.hpp"
 #include "server/observe/log.hpp"
 
 namespace talus::server {
 
 namespace {
 
-constexpr std::size_t kHeadReadBytes = 4096;
+/// So many reads of one connection are answered in a row; then it is another's turn.
+constexpr int kReadsInTurn = 16;
 /// How long, and how much, a peer may go on sending after an answer that closes: closing at once would reset the
 /// connection and take the answer from under the peer.
 constexpr double kAnswerLingerS = 2;
@@ -32,30 +29,34 @@ constexpr std::size_t kLingerBytes = 64 * 1024;
 constexpr double kHalfClosedS = 1;
 
 /// One connection: reads a head, answers, and again. All on one thread.
-class HttpConnection final : public std::enable_shared_from_this<HttpConnection>, public Swept {
+///
+/// `go_on` does so without a coroutine, called whenever there may be something to read, as long as nothing else has to
+/// be waited for; where something has, `serve` does, and then `go_on` has its turn again.
+class HttpConnection final : public std::enable_shared_from_this<HttpConnection>,
+                             public Swept,
+                             private Channel::Reader {
  public:
-  HttpConnection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door)
+  HttpConnection(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass, Door door)
       : Swept(sweeper),
         net_(net),
-        executor_(channel.executor()),
+        executor_(channel->executor()),
         channel_(std::move(channel)),
         pass_(std::move(pass)),
         door_(door),
         policy_(pass_.policy),
         limits_(policy_->limits),
         request_ids_(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now()),
-        scanner_(limits_),
+        input_(limits_),
         client_(pass_.client),
         allow_origin_(policy_->origins.allow_field(std::nullopt)),
-        writer_(net, channel_),
+        writer_(net, *channel_),
         answers_(net, executor_) {
     set_deadline(limits_.silent_s, Count::kSilentTimeout);
     net_.policy.refresh(present_, present_version_);
   }
 
-  Awaitable<void> run();
-  /// Once, before `run`: what the pool makes for this connection keeps it alive.
-  void begin() { answers_.belong_to(weak_from_this()); }
+  /// Once: lives until it ends.
+  void begin();
   void sweep(Instant now) override;
   void drain() override;
   void abort() override;
@@ -64,19 +65,27 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   /// What a request waits for once `serve_now` has done what can be done without waiting.
   enum class Left : std::uint8_t { kNothing, kMaking, kSending, kRefusing };
 
-  void receive(std::size_t bytes);
+  void readable() noexcept override {
+    if (!is_waiting_) go_on();
+  }
+  void go_on() noexcept;
+  void read_on();
+  bool receive();
   bool serve_now(std::string_view head);
+  void serve_waiting(std::size_t head_bytes);
   Awaitable<void> serve(std::string_view head);
   void next_request(std::size_t head_bytes);
   void begin_request(const HttpRequest& request);
+  void begin_refusal(const HttpFault& fault);
   bool answer_now(Route& route, Instant now);
-  Awaitable<void> refuse(HttpFault fault);
+  Awaitable<void> refuse();
   Awaitable<void> upgrade(const StreamRoute& route, std::string_view head);
-  std::optional<HttpAnswer> refuse_upgrade(const HttpRequest& request);
   void send(HttpAnswer&& answer);
   void note(AnswerWriter::State state);
   Awaitable<void> send_rest();
   Awaitable<void> linger();
+  void close();
+  void end();
 
   void set_deadline(double s, Count reason) {
     deadline_ = sweeper().coarse_now() + seconds(s);
@@ -85,7 +94,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
 
   NetContext& net_;
   const asio::io_context::executor_type executor_;
-  Channel channel_;
+  std::unique_ptr<Channel> channel_;  ///< until a stream takes it over
   ConnectionPass pass_;
   const Door door_;
   const PolicyRef policy_;  ///< outlives the pass, which a stream takes over
@@ -93,12 +102,12 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   PolicyRef present_;  ///< keys may have changed since the connection came: what opens a world is judged by the newest
   std::uint64_t present_version_ = 0;
   RequestIds request_ids_;
-  HeadScanner scanner_;
-  std::vector<char> input_;  ///< [0, input_size_) is received and not answered
-  std::size_t input_size_ = 0;
+  HeadBuffer input_;
   Instant deadline_ = Instant::max();
   Count deadline_reason_ = Count::kSilentTimeout;
-  bool is_serving_ = true;  ///< there will be another request
+  std::shared_ptr<HttpConnection> self_;  ///< until the end
+  bool is_serving_ = true;                ///< there will be another request
+  bool is_waiting_ = false;               ///< a coroutine is at work for the present request
   bool is_keep_alive_ = true;
   bool is_draining_ = false;
   bool is_idle_ = true;  ///< between requests
@@ -114,49 +123,56 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   std::string_view allow_origin_;  ///< of the policy
   Route route_;
   Left left_ = Left::kNothing;
-  HttpFault fault_{};
+  HttpFault fault_{};  ///< of kRefusing
   AnswerWriter writer_;
   PoolAnswers answers_;
 };
 
-Awaitable<void> HttpConnection::run() {
-  while (is_serving_) {
-    const auto length = scanner_.scan(std::string_view(input_.data(), input_size_));
-    if (!length) {
-      request_id_ = request_ids_.next();
-      co_await refuse(length.error());
-    } else if (*length) {
-      const std::string_view head(input_.data(), **length);
-      if (!serve_now(head)) co_await serve(head);
-      if (is_serving_) next_request(head.size());
-    } else {
-      // The scanner refuses before this is ever needed, so memory is bounded by the head's limits.
-      if (input_.size() < input_size_ + kHeadReadBytes) input_.resize(input_size_ + kHeadReadBytes);
-      const asio::mutable_buffer into(input_.data() + input_size_, input_.size() - input_size_);
-      Channel::Read read;
-      if (Socket* clear = channel_.in_clear()) {  // saves a coroutine's frame for each request
-        const auto [error, got] = co_await clear->async_read_some(into, kAwait);
-        read = {error, got};
-      } else {
-        read = co_await channel_.read_some(into);
-      }
-      read.error ? void(is_serving_ = false) : receive(read.bytes);
-    }
-  }
-  channel_.close();
+void HttpConnection::begin() {
+  self_ = shared_from_this();
+  answers_.belong_to(self_);
+  channel_->tell(this);
 }
 
-void HttpConnection::receive(std::size_t bytes) {
-  if (input_size_ != 0) {
-    input_size_ += bytes;
-    return;
+/// Does what can be done without waiting.
+void HttpConnection::go_on() noexcept {
+  try {
+    read_on();
+  } catch (const std::exception&) {
+    net_.metrics.add(Count::kConnectionFault);
+    is_serving_ = is_waiting_ = false;  // what throws here has not begun to wait
   }
+  if (!is_serving_ && !is_waiting_) end();
+}
+
+void HttpConnection::read_on() {
+  for (int reads = 0; is_serving_;) {
+    const auto length = input_.head_bytes();
+    if (!length) {
+      begin_refusal(length.error());
+      return serve_waiting(0);
+    }
+    if (*length) {
+      if (!serve_now(input_.first(**length))) return serve_waiting(**length);
+      if (is_serving_) next_request(**length);
+    } else if (reads++ == kReadsInTurn) {
+      return asio::post(executor_, [this, self = self_] { readable(); });
+    } else if (!receive()) {
+      return;
+    }
+  }
+}
+
+/// False when there is nothing yet.
+bool HttpConnection::receive() {
+  const auto [error, got] = channel_->read_now(input_.room());
+  if (error == asio::error::would_block) return false;
+  is_serving_ = !error;
+  if (error) return true;
+  if (input_.empty()) set_deadline(limits_.head_s, Count::kHeadTimeout);
   is_idle_ = false;
-  set_deadline(limits_.head_s, Count::kHeadTimeout);
-  // An empty line before a request is ignored (RFC 9112, 2.2); more of them are not.
-  const std::size_t skipped = bytes >= 2 && input_[0] == '\r' && input_[1] == '\n' ? 2 : 0;
-  if (skipped != 0) std::memmove(input_.data(), input_.data() + skipped, bytes - skipped);
-  input_size_ = bytes - skipped;
+  input_.receive(got);
+  return true;
 }
 
 /// All of it, if nothing has to be waited for, which is so for whatever is in memory and a peer that keeps up. False
@@ -168,24 +184,23 @@ bool HttpConnection::serve_now(std::string_view head) {
   const Instant start = net_.clock.now();
   HttpRequest request;
   if (const auto fault = parse_head_into(head, limits_, request)) {
-    request_id_ = request_ids_.next();
-    fault_ = *fault;
-    left_ = Left::kRefusing;
+    begin_refusal(*fault);
     return false;
   }
   begin_request(request);
-  const RouteContext context{net_.worlds,
-                             net_.files,
-                             net_.worlds_json,
-                             door_,
-                             net_.is_ready.load(std::memory_order_relaxed),
-                             &present_->tokens,
-                             sweeper().unix_seconds()};
-  route_ = resolve(request, context);
+  const bool is_ready = net_.is_ready.load(std::memory_order_relaxed);
+  route_ = resolve(request, {net_.worlds, net_.files, net_.worlds_json, door_, is_ready, &present_->tokens,
+                             sweeper().unix_seconds()});
   const Instant resolved = net_.clock.now();
   net_.metrics.record(Hop::kReadLoop, resolved - start);
   if (!answer_now(route_, resolved)) left_ = Left::kMaking;
   return left_ == Left::kNothing && !has_body_;
+}
+
+void HttpConnection::begin_refusal(const HttpFault& fault) {
+  request_id_ = request_ids_.next();
+  fault_ = fault;
+  left_ = Left::kRefusing;
 }
 
 void HttpConnection::begin_request(const HttpRequest& request) {
@@ -216,27 +231,32 @@ bool HttpConnection::answer_now(Route& route, Instant now) {
     const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name);
     send(chunk_answer(std::move(payload), etag, chunk->name.format));
   } else if (std::holds_alternative<MetricsRoute>(route)) {
-    HttpAnswer answer;
-    answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
-    answer.text = net_.metrics.text();
-    send(std::move(answer));
+    send(metrics_answer(net_.metrics));
   } else {
     return false;
   }
   return true;
 }
 
-/// What `serve_now` has left.
+/// What `serve_now` has left of the first `head_bytes` that were received; reads on behind it.
+void HttpConnection::serve_waiting(std::size_t head_bytes) {
+  is_waiting_ = true;
+  asio::co_spawn(executor_, serve(input_.first(head_bytes)),
+                 [this, self = self_, head_bytes](const std::exception_ptr& fault) {
+                   is_waiting_ = false;
+                   if (fault != nullptr) {
+                     net_.metrics.add(Count::kConnectionFault);
+                     is_serving_ = false;
+                   }
+                   if (is_serving_) next_request(head_bytes);
+                   go_on();
+                 });
+}
+
 Awaitable<void> HttpConnection::serve(std::string_view head) {
-  if (left_ == Left::kRefusing) {
-    co_await refuse(fault_);
-    co_return;
-  }
-  if (left_ == Left::kMaking && std::holds_alternative<StreamRoute>(route_)) {
-    co_await upgrade(std::get<StreamRoute>(route_), head);
-    co_return;
-  }
+  if (left_ == Left::kRefusing) co_return co_await refuse();
   if (left_ == Left::kMaking) {
+    if (const auto* stream = std::get_if<StreamRoute>(&route_)) co_return co_await upgrade(*stream, head);
     HttpAnswer answer = co_await answers_.make(std::move(route_), client_);
     send(std::move(answer));
   }
@@ -249,57 +269,30 @@ void HttpConnection::next_request(std::size_t head_bytes) {
     is_serving_ = false;
     return;
   }
-  input_size_ -= head_bytes;
-  if (input_size_ != 0) std::memmove(input_.data(), input_.data() + head_bytes, input_size_);
-  scanner_.reset();
-  is_idle_ = input_size_ == 0;
+  input_.drop(head_bytes);
+  is_idle_ = input_.empty();
   if (is_idle_ && is_draining_) is_serving_ = false;
   is_idle_ ? set_deadline(limits_.idle_s, Count::kIdleTimeout) : set_deadline(limits_.head_s, Count::kHeadTimeout);
 }
 
-Awaitable<void> HttpConnection::refuse(HttpFault fault) {
-  net_.metrics.add(count_of_refusal(fault.status));
+Awaitable<void> HttpConnection::refuse() {
+  net_.metrics.add(count_of_refusal(fault_.status));
   is_keep_alive_ = false;
   is_head_only_ = false;
   path_ = {};
-  send(error_answer(fault.status, fault.code, fault.message));
+  send(error_answer(fault_.status, fault_.code, fault_.message));
   co_await send_rest();
   if (is_serving_) co_await linger();
   is_serving_ = false;
 }
 
-/// What only this connection can say of a request that could be a WebSocket: whose page asks, and how many streams its
-/// address has. Behind a proxy a stream counts for the one who is served.
-std::optional<HttpAnswer> HttpConnection::refuse_upgrade(const HttpRequest& request) {
-  if (!policy_->origins.admits(request.field("origin"))) {
-    net_.metrics.add(Count::kOriginRefused);
-    return error_answer(403, "origin_not_allowed", "Origin: pages of this origin may not stream from here");
-  }
-  if (!pass_.is_proxy) return std::nullopt;
-  const PeerAddress address = counted_address(policy_->proxies.client_of(pass_.address, request));
-  auto [verdict, place] =
-      net_.census.enter(address, std::numeric_limits<std::size_t>::max(), limits_.connections_per_address);
-  if (verdict == ConnectionCensus::Verdict::kWelcome) {
-    pass_.place = std::move(place);
-    return std::nullopt;
-  }
-  net_.metrics.add(Count::kConnectionsRefusedAddress);
-  return error_answer(429, "connections_per_address", "too many streams of your address");
-}
-
 Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_view head) {
-  HttpRequest request;
-  TALUS_CHECK(!parse_head_into(head, limits_, request));
-  auto handshake = websocket_handshake(request);
-  if (handshake) {
-    if (auto refusal = refuse_upgrade(request)) handshake = std::unexpected(std::move(*refusal));
-  }
+  auto handshake = stream_handshake(net_, pass_, head, request_id_);
   if (!handshake) {
     send(std::move(handshake.error()));
     co_await send_rest();
     co_return;
   }
-  handshake->insert(handshake->size() - 2, "X-Request-Id: " + std::string(request_id_) + "\r\n");
   note(writer_.begin_head(std::move(*handshake)));
   co_await send_rest();
   if (!is_serving_) co_return;
@@ -309,9 +302,10 @@ Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_vi
   start.world = route.world;
   start.is_admitted = route.is_admitted;
   start.request_id = request_id_;
-  const auto rest = std::as_bytes(std::span(input_.data() + head.size(), input_size_ - head.size()));
+  const auto rest = input_.behind(head.size());
   start.received.assign(rest.begin(), rest.end());
   deadline_ = Instant::max();
+  channel_->tell(nullptr);
   start_stream_session(net_, sweeper(), std::move(channel_), std::move(pass_), std::move(start));
 }
 
@@ -344,57 +338,61 @@ Awaitable<void> HttpConnection::send_rest() {
 }
 
 Awaitable<void> HttpConnection::linger() {
-  channel_.shutdown_send();
   set_deadline(kAnswerLingerS, Count::kEnd);
-  std::array<char, kHeadReadBytes> dropped;
-  for (std::size_t total = 0; total < kLingerBytes;) {
-    const asio::mutable_buffer into(dropped.data(), dropped.size());
-    const auto [error, got] = co_await channel_.read_some(into);
-    if (error) break;
-    total += got;
-  }
+  co_await channel_->hear_out(kLingerBytes);
 }
 
 void HttpConnection::sweep(Instant now) {
+  if (channel_ == nullptr) return;
   if (const auto since = answers_.waiting_since()) {
     // A ticket is dropped as soon as nobody waits behind this connection.
-    const bool is_gone = now - *since > seconds(kHalfClosedS) && channel_.is_peer_gone();
+    const bool is_gone = now - *since > seconds(kHalfClosedS) && channel_->is_peer_gone();
     if (is_gone || now - *since >= seconds(limits_.wait_s)) answers_.give_up();
     return;
   }
   if (const auto pace = writer_.judge_pace(now, limits_); pace != ReadPace::Verdict::kFine) {
     net_.metrics.add(count_of(pace));
     writer_.end_wait();
-    return channel_.reset();
+    return channel_->reset();
   }
   if (now < deadline_) return;
   deadline_ = Instant::max();
   if (deadline_reason_ != Count::kEnd) net_.metrics.add(deadline_reason_);
-  channel_.close();
+  close();
 }
 
 void HttpConnection::drain() {
   if (door_ == Door::kAdmin) return;
   is_draining_ = true;
   is_keep_alive_ = false;
-  if (is_idle_) channel_.close();
+  if (is_idle_) close();
 }
 
 void HttpConnection::abort() {
-  channel_.reset();
+  if (channel_ != nullptr) channel_->reset();
+  close();
   answers_.give_up();
+}
+
+/// Whoever waits for the channel hears of it and ends.
+void HttpConnection::close() {
+  if (channel_ != nullptr) channel_->close();
+  is_serving_ = false;
+  if (!is_waiting_) end();
+}
+
+void HttpConnection::end() {
+  if (channel_ != nullptr) channel_->close();
+  deadline_ = Instant::max();
+  // Destroyed later: a member function of this may be what ends it.
+  if (self_ != nullptr) asio::post(executor_, [self = std::move(self_)] {});
 }
 
 }  // namespace
 
-void start_http_connection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door) {
-  const auto executor = channel.executor();
-  auto connection = std::make_shared<HttpConnection>(net, sweeper, std::move(channel), std::move(pass), door);
-  HttpConnection& running = *connection;
-  running.begin();
-  asio::co_spawn(executor, running.run(), [connection = std::move(connection), &net](const std::exception_ptr& fault) {
-    if (fault != nullptr) net.metrics.add(Count::kConnectionFault);
-  });
+void start_http_connection(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                           Door door) {
+  std::make_shared<HttpConnection>(net, sweeper, std::move(channel), std::move(pass), door)->begin();
 }
 
 }  // namespace talus::server

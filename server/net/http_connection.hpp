@@ -1,6 +1,8 @@
 // Starts an HTTP connection on an accepted socket. Asio's types stay out of most of the room's sources.
 #pragma once
 
+#include <memory>
+
 #include "server/net/channel.hpp"
 #include "server/net/connection_census.hpp"
 #include "server/net/net_context.hpp"
@@ -21,6 +23,7 @@ struct ConnectionPass {
 };
 
 /// Serves until the peer or a limit ends it. On the thread of `sweeper`, which is that of `channel`.
-void start_http_connection(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, Door door);
+void start_http_connection(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                           Door door);
 
 }  // namespace talus::server

@@ -1,6 +1,7 @@
 #include "server/net/http_request.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cstring>
 
@@ -32,8 +33,8 @@ char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// What a byte may be part of, looked up: heads are read on every request.
-enum CharKind : std::uint8_t { kTokenChar = 1, kTargetChar = 2, kHostChar = 4 };
+/// What a byte may be part of.
+enum CharKind : std::uint8_t { kTokenChar = 1, kHostChar = 2 };
 
 constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
   constexpr std::string_view kTokenMarks = "!#$%&'*+-.^_`|~";
@@ -44,10 +45,8 @@ constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
     const char c = static_cast<char>(i);
     const bool is_letter_or_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
     const bool is_token = is_letter_or_digit || kTokenMarks.find(c) != std::string_view::npos;
-    const bool is_target = i > 0x20 && i < 0x7F && c != '#';
     const bool is_host = is_letter_or_digit || kHostMarks.find(c) != std::string_view::npos;
-    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_target ? kTargetChar : 0) |
-                                         (is_host ? kHostChar : 0));
+    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_host ? kHostChar : 0));
   }
   return kinds;
 }();
@@ -57,19 +56,51 @@ bool is_all(CharKind kind, std::string_view text) {
                      [kind](char c) { return (kCharKinds[static_cast<unsigned char>(c)] & kind) != 0; });
 }
 
-/// Whether one of eight bytes is below a space or DEL. Based on: S. E. Anderson, "Bit Twiddling Hacks", hasless.
-bool has_control(std::uint64_t bytes) {
-  constexpr std::uint64_t kEach = 0x0101010101010101;
-  const std::uint64_t del = bytes ^ (kEach * 0x7F);
-  return ((((bytes - kEach * 0x20) & ~bytes) | ((del - kEach) & ~del)) & (kEach * 0x80)) != 0;
+// Eight bytes at a time. A result has the highest bit of each byte that is meant; of the bytes behind the first one
+// perhaps too. Based on: S. E. Anderson, "Bit Twiddling Hacks", hasless and haszero.
+
+constexpr std::uint64_t kEach = 0x0101010101010101;
+constexpr std::size_t kEight = sizeof(kEach);
+static_assert(std::endian::native == std::endian::little, "the first byte is the lowest");
+
+/// `limit` is at most 0x80.
+constexpr std::uint64_t below(std::uint64_t bytes, std::uint64_t limit) {
+  return (bytes - kEach * limit) & ~bytes & (kEach * 0x80);
+}
+
+constexpr std::uint64_t equal(std::uint64_t bytes, char c) {
+  return below(bytes ^ (kEach * static_cast<unsigned char>(c)), 1);
+}
+
+std::uint64_t load_eight(const char* at) {
+  std::uint64_t eight = 0;
+  std::memcpy(&eight, at, kEight);
+  return eight;
+}
+
+/// Whether all of it is visible ASCII but '#'.
+bool is_target(std::string_view text) {
+  const auto unfit = [](std::uint64_t eight) {
+    return below(eight, 0x21) | equal(eight, 0x7F) | equal(eight, '#') | (eight & (kEach * 0x80));
+  };
+  std::uint64_t found = 0;
+  for (; text.size() >= kEight; text.remove_prefix(kEight)) found |= unfit(load_eight(text.data()));
+  std::array<char, kEight> rest;
+  rest.fill('/');
+  std::copy(text.begin(), text.end(), rest.begin());
+  return (found | unfit(load_eight(rest.data()))) == 0;
 }
 
 /// The first of [from, to) that is a control character but a tab, or `to`.
 std::size_t end_of_text(std::string_view bytes, std::size_t from, std::size_t to) {
   const auto is_text = [](char c) { return (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F) || c == '\t'; };
-  for (std::uint64_t eight = 0; from + sizeof(eight) <= to; from += sizeof(eight)) {
-    std::memcpy(&eight, bytes.data() + from, sizeof(eight));
-    if (has_control(eight)) break;
+  while (from + kEight <= to) {
+    const std::uint64_t eight = load_eight(bytes.data() + from);
+    const std::uint64_t found = below(eight, 0x20) | equal(eight, 0x7F);
+    from += found == 0 ? kEight : static_cast<std::size_t>(std::countr_zero(found)) / 8;
+    if (found == 0) continue;
+    if (!is_text(bytes[from])) return from;
+    ++from;
   }
   while (from < to && is_text(bytes[from])) ++from;
   return from;
@@ -97,7 +128,7 @@ bool split_target(std::string_view target, HttpRequest& out) {
     target.remove_prefix(slash);
   }
   if (target == "*") return out.method == HttpMethod::kOptions;
-  if (target.empty() || target.front() != '/' || !is_all(kTargetChar, target)) return false;
+  if (target.empty() || target.front() != '/' || !is_target(target)) return false;
   const std::size_t mark = target.find('?');
   out.path = target.substr(0, mark);
   if (mark != std::string_view::npos) out.query = target.substr(mark + 1);
@@ -115,8 +146,7 @@ std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& lim
   std::size_t hosts = 0;
   std::optional<std::uint64_t> length;
   std::optional<bool> is_chunked;
-  for (std::size_t i = 0; i < request.field_count; ++i) {
-    const HttpField& field = request.fields[i];
+  for (const HttpField& field : request.fields) {
     if (equal_ignoring_case(field.name, "host")) {
       if (!is_all(kHostChar, field.value)) return kHost;
       ++hosts;
@@ -158,47 +188,45 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 }
 
 std::expected<std::optional<std::size_t>, HttpFault> HeadScanner::scan(std::string_view bytes) {
-  for (; scanned_ < bytes.size(); ++scanned_) {
-    const std::size_t limit =
-        request_line_end_ == 0 ? limits_->request_line_bytes : request_line_end_ + limits_->head_bytes;
-    // Nearly all of a head is text inside a line, of which nothing but its length is of interest.
-    if (scanned_ != line_start_ && bytes[scanned_ - 1] != '\r') {
-      scanned_ = end_of_text(bytes, scanned_, std::min(bytes.size(), limit));
-      if (scanned_ == bytes.size()) break;
+  for (;;) {
+    const bool is_request_line = request_line_end_ == 0;
+    const std::size_t limit = is_request_line ? limits_->request_line_bytes : request_line_end_ + limits_->head_bytes;
+    const std::size_t end = std::min(bytes.size(), limit);
+    const auto is_too_long = [&] { return std::unexpected(is_request_line ? kLongLine : kLongHead); };
+    if (!is_request_line && line_start_ < end && (bytes[line_start_] == ' ' || bytes[line_start_] == '\t')) {
+      return std::unexpected(kFolded);
     }
-    const char c = bytes[scanned_];
-    if (scanned_ >= limit) return std::unexpected(request_line_end_ == 0 ? kLongLine : kLongHead);
-    const bool follows_cr = scanned_ > 0 && bytes[scanned_ - 1] == '\r';
-    if ((c == '\n') != follows_cr) return std::unexpected(kBareLine);
-    const bool is_line_start = scanned_ == line_start_;
-    if (is_line_start && request_line_end_ != 0 && (c == ' ' || c == '\t')) return std::unexpected(kFolded);
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7F) return std::unexpected(kControl);
-    if (c != '\n') continue;
-    const bool is_empty_line = scanned_ == line_start_ + 1;
-    line_start_ = scanned_ + 1;
-    if (is_empty_line && request_line_end_ == 0) return std::unexpected(kGrammar);
-    if (is_empty_line) return ++scanned_;
-    if (request_line_end_ == 0) {
+    scanned_ = end_of_text(bytes, scanned_, end);
+    if (scanned_ == bytes.size()) return std::nullopt;
+    if (scanned_ == limit) return is_too_long();
+    if (bytes[scanned_] != '\r') return std::unexpected(bytes[scanned_] == '\n' ? kBareLine : kControl);
+    if (scanned_ + 1 == bytes.size()) return std::nullopt;
+    if (scanned_ + 1 == limit) return is_too_long();
+    if (bytes[scanned_ + 1] != '\n') return std::unexpected(kBareLine);
+    const bool is_empty = scanned_ == line_start_;
+    scanned_ += kLineEnd.size();
+    line_start_ = scanned_;
+    if (is_empty && is_request_line) return std::unexpected(kGrammar);
+    if (is_empty) return scanned_;
+    if (is_request_line) {
       request_line_end_ = line_start_;
-    } else if (++fields_ > std::min(limits_->head_fields, HttpRequest::kFieldsMax)) {
+    } else if (++fields_ > std::min(limits_->head_fields, HttpFields::kMax)) {
       return std::unexpected(kManyFields);
     }
   }
-  return std::nullopt;
 }
 
 std::optional<std::string_view> HttpRequest::field(std::string_view name) const {
-  for (std::size_t i = 0; i < field_count; ++i) {
-    if (equal_ignoring_case(fields[i].name, name)) return fields[i].value;
+  for (const HttpField& field : fields) {
+    if (equal_ignoring_case(field.name, name)) return field.value;
   }
   return std::nullopt;
 }
 
 bool HttpRequest::lists(std::string_view name, std::string_view token) const {
-  for (std::size_t i = 0; i < field_count; ++i) {
-    if (!equal_ignoring_case(fields[i].name, name)) continue;
-    std::string_view rest = fields[i].value;
+  for (const HttpField& field : fields) {
+    if (!equal_ignoring_case(field.name, name)) continue;
+    std::string_view rest = field.value;
     while (!rest.empty()) {
       const std::size_t comma = rest.find(',');
       if (equal_ignoring_case(trimmed(rest.substr(0, comma)), token)) return true;
@@ -217,8 +245,8 @@ std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits&
     const std::string_view line = head.substr(0, end);
     const std::size_t colon = line.find(':');
     if (colon == 0 || colon == std::string_view::npos || !is_all(kTokenChar, line.substr(0, colon))) return kFieldName;
-    if (request.field_count == HttpRequest::kFieldsMax) return kManyFields;
-    request.fields[request.field_count++] = {line.substr(0, colon), trimmed(line.substr(colon + 1))};
+    if (request.fields.size() == HttpFields::kMax) return kManyFields;
+    request.fields.push({line.substr(0, colon), trimmed(line.substr(colon + 1))});
   }
   request.is_keep_alive =
       request.is_http_1_0 ? request.lists("connection", "keep-alive") : !request.lists("connection", "close");

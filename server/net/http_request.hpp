@@ -49,17 +49,35 @@ struct HttpField {
   std::string_view value;
 };
 
-struct HttpRequest {
-  static constexpr std::size_t kFieldsMax = 64;
+/// The fields of one head, in place: none is touched before it is there, since most of 64 never are.
+class HttpFields {
+ public:
+  static constexpr std::size_t kMax = 64;
 
+  HttpFields() : at_() {}
+  /// Requires room.
+  void push(const HttpField& field) { at_.fields[count_++] = field; }
+  const HttpField* begin() const { return at_.fields.data(); }
+  const HttpField* end() const { return begin() + count_; }
+  std::size_t size() const { return count_; }
+
+ private:
+  union Room {
+    Room() {}
+    std::array<HttpField, kMax> fields;
+  };
+  Room at_;
+  std::size_t count_ = 0;
+};
+
+struct HttpRequest {
   HttpMethod method = HttpMethod::kOther;
   std::string_view path;   ///< from the first slash, without query, as sent
   std::string_view query;  ///< after '?', as sent
   bool is_keep_alive = false;
   bool is_http_1_0 = false;
   bool has_body = false;  ///< a length above zero, or a transfer coding
-  std::array<HttpField, kFieldsMax> fields;
-  std::size_t field_count = 0;
+  HttpFields fields;
 
   /// The value of the first field of that name, letters in any case.
   std::optional<std::string_view> field(std::string_view name) const;

@@ -1,6 +1,7 @@
 #include "server/net/server.hpp"
 
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -8,8 +9,10 @@
 #include <asio/executor_work_guard.hpp>
 #include <asio/ip/address.hpp>
 #include <asio/signal_set.hpp>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <exception>
 #include <future>
 #include <limits>
@@ -20,6 +23,7 @@
 
 #include "server/net/connection_census.hpp"
 #include "server/net/http_connection.hpp"
+#include "server/net/poller.hpp"
 #include "server/net/request_id.hpp"
 #include "server/net/socket.hpp"
 #include "server/net/stream_session.hpp"
@@ -36,15 +40,14 @@ constexpr std::string_view kFull =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nContent-Length: 63\r\nRetry-After: 5\r\n"
     "Connection: close\r\n\r\n{\"error\":\"busy\",\"message\":\"too many connections: come again\"}\r\n";
 
-WholeAddress whole_address(const asio::ip::address& address) {
-  if (address.is_v6()) return address.to_v6().to_bytes();
-  return asio::ip::make_address_v6(asio::ip::v4_mapped, address.to_v4()).to_bytes();
-}
+/// Connections taken in a row; then what else the thread has to do has its turn.
+constexpr int kAcceptsInARow = 64;
 
 struct IoThread {
-  explicit IoThread(const Clock& clock) : sweeper(context, clock), work(context.get_executor()) {}
+  explicit IoThread(const Clock& clock) : poller(context), sweeper(context, clock), work(context.get_executor()) {}
 
   asio::io_context context{1};
+  Poller poller;
   Sweeper sweeper;
   asio::executor_work_guard<Executor> work;
   std::thread thread;
@@ -58,26 +61,48 @@ struct Listener {
   const bool is_tls;
 };
 
+/// A connection that has come, and whose it is.
+struct Arrival {
+  Descriptor socket;
+  WholeAddress address{};
+};
+
+/// Takes one in; without a socket when none could be, and errno says why.
+Arrival take_in(int listening) {
+  sockaddr_storage from{};
+  socklen_t size = sizeof(from);
+  Arrival arrival;
+  auto* const address = reinterpret_cast<sockaddr*>(&from);
+  arrival.socket = Descriptor(::accept4(listening, address, &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (from.ss_family == AF_INET6) {
+    const auto& v6 = reinterpret_cast<const sockaddr_in6&>(from);
+    std::memcpy(arrival.address.data(), &v6.sin6_addr, arrival.address.size());
+  } else {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(from);
+    const asio::ip::address_v4 mapped(ntohl(v4.sin_addr.s_addr));
+    arrival.address = asio::ip::make_address_v6(asio::ip::v4_mapped, mapped).to_bytes();
+  }
+  return arrival;
+}
+
+void say_full(const Descriptor& socket) {
+  ::send(socket.number(), kFull.data(), kFull.size(), MSG_NOSIGNAL);
+}
+
 /// A descriptor kept for the day when there are none: given up to take a connection in, tell it so and end it.
 class SpareDescriptor {
  public:
   SpareDescriptor() { reopen(); }
-  ~SpareDescriptor() { ::close(descriptor_); }
-  SpareDescriptor(const SpareDescriptor&) = delete;
-  SpareDescriptor& operator=(const SpareDescriptor&) = delete;
 
   void refuse_one(int listening) {
-    ::close(descriptor_);
-    if (const int taken = ::accept4(listening, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC); taken >= 0) {
-      ::send(taken, kFull.data(), kFull.size(), MSG_NOSIGNAL);
-      ::close(taken);
-    }
+    descriptor_.close();
+    if (const Arrival arrival = take_in(listening); arrival.socket.is_open()) say_full(arrival.socket);
     reopen();
   }
 
  private:
-  void reopen() { descriptor_ = ::open("/dev/null", O_RDONLY | O_CLOEXEC); }
-  int descriptor_ = -1;
+  void reopen() { descriptor_ = Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
+  Descriptor descriptor_;
 };
 
 }  // namespace
@@ -89,7 +114,7 @@ struct NetServer::Threads {
 
   Executor front() { return io.front()->context.get_executor(); }
   Awaitable<void> accept_loop(Listener* listener);
-  void welcome(const Listener& listener, Socket socket, IoThread& target);
+  void welcome(const Listener& listener, Arrival arrival, IoThread& target);
   void wait_for_signal();
   void each_sweeper(void (Sweeper::*act)());
   void close_listeners(bool is_admin);
@@ -121,6 +146,7 @@ std::expected<std::string, std::string> NetServer::listen(Listen kind, const End
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(wanted, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor.non_blocking(true, error);
   const auto name = [](const asio::ip::tcp::endpoint& at) {
     const std::string address = at.address().to_string();
     return (at.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(at.port());
@@ -143,6 +169,7 @@ void NetServer::start(std::function<void(Signal)> on_signal) {
   }
   t.is_running = true;
   for (const auto& io : t.io) {
+    io->poller.start();
     asio::co_spawn(io->context, io->sweeper.run(), [](const std::exception_ptr&) {});
     io->thread = std::thread([this, thread = io.get()] {
       for (;;) {
@@ -184,6 +211,7 @@ void NetServer::stop(double seconds_max) {
   is_admin_empty.wait();
   t.each_sweeper(&Sweeper::stop);
   for (const auto& io : t.io) {
+    asio::post(io->context, [&poller = io->poller] { poller.stop(); });
     io->work.reset();
     io->thread.join();
   }
@@ -214,28 +242,33 @@ Awaitable<void> NetServer::Threads::accept_loop(Listener* listener) {
   Acceptor& acceptor = listener->acceptor;
   Timer pause(acceptor.get_executor());
   while (acceptor.is_open()) {
-    IoThread& target = *io[next++ % io.size()];
-    Socket socket(target.context.get_executor());
-    const auto [error] = co_await acceptor.async_accept(socket, kAwait);
-    if (!error) {
-      welcome(*listener, std::move(socket), target);
-    } else if (error == asio::error::no_descriptors) {
-      net.metrics.add(Count::kConnectionsRefusedDescriptors);
-      spare.refuse_one(acceptor.native_handle());
-    } else if (acceptor.is_open() && error != asio::error::connection_aborted) {
-      // Out of some other resource: trying again at once would only burn the thread.
+    const auto [error] = co_await acceptor.async_wait(Acceptor::wait_read, kAwait);
+    if (error) continue;  // it was closed
+    bool is_short_of_something = false;
+    for (int i = 0; i < kAcceptsInARow && acceptor.is_open(); ++i) {
+      Arrival arrival = take_in(acceptor.native_handle());
+      const int fault = errno;
+      if (arrival.socket.is_open()) {
+        welcome(*listener, std::move(arrival), *io[next++ % io.size()]);
+      } else if (fault == EMFILE || fault == ENFILE) {
+        net.metrics.add(Count::kConnectionsRefusedDescriptors);
+        spare.refuse_one(acceptor.native_handle());
+      } else if (fault != ECONNABORTED && fault != EINTR) {
+        is_short_of_something = fault != EAGAIN && fault != EWOULDBLOCK;
+        break;
+      }
+    }
+    if (is_short_of_something) {
+      // Trying again at once would only burn the thread.
       pause.expires_after(std::chrono::milliseconds(50));
       co_await pause.async_wait(kAwait);
     }
   }
 }
 
-void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThread& target) {
+void NetServer::Threads::welcome(const Listener& listener, Arrival arrival, IoThread& target) {
   const Listen kind = listener.kind;
-  asio::error_code error;
-  const auto peer = socket.remote_endpoint(error);
-  if (error) return;  // gone already
-  const WholeAddress whole = whole_address(peer.address());
+  const WholeAddress whole = arrival.address;
   const PeerAddress address = counted_address(whole);
   PolicyRef policy = net.policy.load();
   // A proxy speaks for many: those behind it are counted when their streams open.
@@ -246,7 +279,7 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
   if (verdict != ConnectionCensus::Verdict::kWelcome) {
     net.metrics.add(verdict == ConnectionCensus::Verdict::kTooMany ? Count::kConnectionsRefusedTotal
                                                                    : Count::kConnectionsRefusedAddress);
-    if (kind != Listen::kTcp && !listener.is_tls) socket.write_some(asio::buffer(kFull), error);
+    if (kind != Listen::kTcp && !listener.is_tls) say_full(arrival.socket);
     return;
   }
   ConnectionPass pass{(kind == Listen::kAdmin ? net.admin_connections : net.connections).enter(),
@@ -257,21 +290,22 @@ void NetServer::Threads::welcome(const Listener& listener, Socket socket, IoThre
                       is_proxy};
   if (!pass.gate) return;
   net.metrics.add(Count::kConnectionsAccepted);
-  set_socket_options(socket);
+  set_socket_options(arrival.socket.number());
   const TlsContext* tls = listener.is_tls ? pass.policy->tls.get() : nullptr;
-  asio::post(target.context, [this, kind, &target, tls, socket = std::move(socket), pass = std::move(pass)]() mutable {
-    Channel channel(std::move(socket), tls, net.metrics);
-    if (kind == Listen::kTcp) {
-      StreamStart start;
-      start.framing = make_tcp_framing(pass.policy->limits.message_bytes);
-      RequestIds ids(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now());
-      start.request_id = ids.next();
-      start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
-    } else {
-      const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;
-      start_http_connection(net, target.sweeper, std::move(channel), std::move(pass), door);
-    }
-  });
+  asio::post(target.context,
+             [this, kind, &target, tls, socket = std::move(arrival.socket), pass = std::move(pass)]() mutable {
+               auto channel = std::make_unique<Channel>(target.poller, std::move(socket), tls, net.metrics);
+               if (kind == Listen::kTcp) {
+                 StreamStart start;
+                 start.framing = make_tcp_framing(pass.policy->limits.message_bytes);
+                 RequestIds ids(net.request_numbers.fetch_add(1, std::memory_order_relaxed), net.clock.now());
+                 start.request_id = ids.next();
+                 start_stream_session(net, target.sweeper, std::move(channel), std::move(pass), std::move(start));
+               } else {
+                 const Door door = kind == Listen::kAdmin ? Door::kAdmin : Door::kPublic;
+                 start_http_connection(net, target.sweeper, std::move(channel), std::move(pass), door);
+               }
+             });
 }
 
 }  // namespace talus::server

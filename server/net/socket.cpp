@@ -16,13 +16,10 @@ void set_option(int descriptor, int level, int name, int value) {
 
 }  // namespace
 
-void set_socket_options(Socket& socket) {
-  const int descriptor = socket.native_handle();
+void set_socket_options(int descriptor) {
   set_option(descriptor, IPPROTO_TCP, TCP_NODELAY, 1);
   set_option(descriptor, SOL_SOCKET, SO_SNDBUF, kSocketSendBytes);
   set_option(descriptor, IPPROTO_TCP, TCP_NOTSENT_LOWAT, kSocketUnsentBytes);
-  asio::error_code error;
-  socket.non_blocking(true, error);
 }
 
 }  // namespace talus::server

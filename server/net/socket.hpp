@@ -1,4 +1,4 @@
-// What of Asio the net room uses, spelled once.
+// What of Asio the net room uses, spelled once, and descriptors of sockets.
 //
 // Errors come back as values. Awaitables are awaited on the thread of their connection only: every connection belongs
 // to one single-threaded io_context for its life, so nothing inside a connection is locked.
@@ -14,12 +14,12 @@
 #include <asio/steady_timer.hpp>
 #include <asio/use_awaitable.hpp>
 
-#include <cstddef>
-#include <span>
+#include <unistd.h>
+
+#include <utility>
 
 namespace talus::server {
 
-using Socket = asio::basic_stream_socket<asio::ip::tcp, asio::io_context::executor_type>;
 using Acceptor = asio::basic_socket_acceptor<asio::ip::tcp, asio::io_context::executor_type>;
 using Timer = asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>,
                                          asio::io_context::executor_type>;
@@ -27,7 +27,7 @@ template <typename T>
 using Awaitable = asio::awaitable<T, asio::io_context::executor_type>;
 
 inline constexpr asio::use_awaitable_t<asio::io_context::executor_type> kAwaitable{};
-/// `const auto [error, n] = co_await socket.async_read_some(buffer, kAwait);`
+/// `const auto [error] = co_await timer.async_wait(kAwait);`
 inline constexpr auto kAwait = asio::experimental::as_tuple_t<asio::use_awaitable_t<asio::io_context::executor_type>>{};
 
 /// A timer used as a bell: waits for ever, and is rung by cancelling it.
@@ -41,7 +41,30 @@ class Bell {
   Timer timer_;
 };
 
+/// Owns a descriptor; -1 for none.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  int number() const { return number_; }
+  bool is_open() const { return number_ >= 0; }
+  void close() {
+    if (is_open()) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
 /// Options of every accepted socket; failures are left to the first read.
-void set_socket_options(Socket& socket);
+void set_socket_options(int descriptor);
 
 }  // namespace talus::server

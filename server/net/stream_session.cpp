@@ -70,7 +70,8 @@ Count count_of(ByeReason reason) {
 /// One streaming client. All on one thread; pool threads post to it.
 class StreamSession final : public std::enable_shared_from_this<StreamSession>, public Swept {
  public:
-  StreamSession(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start);
+  StreamSession(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                StreamStart start);
 
   Awaitable<void> read_loop();
   Awaitable<void> write_loop();
@@ -94,7 +95,7 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
 
   NetContext& net_;
   const asio::io_context::executor_type executor_;
-  Channel channel_;
+  const std::unique_ptr<Channel> channel_;
   ConnectionPass pass_;
   std::unique_ptr<Framing> framing_;
   std::optional<std::size_t> world_;
@@ -119,10 +120,11 @@ class StreamSession final : public std::enable_shared_from_this<StreamSession>, 
   Instant linger_until_ = Instant::max();
 };
 
-StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start)
+StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                             StreamStart start)
     : Swept(sweeper),
       net_(net),
-      executor_(channel.executor()),
+      executor_(channel->executor()),
       channel_(std::move(channel)),
       pass_(std::move(pass)),
       framing_(std::move(start.framing)),
@@ -132,7 +134,7 @@ StreamSession::StreamSession(NetContext& net, Sweeper& sweeper, Channel channel,
       request_id_(std::move(start.request_id)),
       limits_(pass_.policy->limits),
       messages_(limits_.messages_per_s, limits_.message_burst, net.clock.now()),
-      writer_(net, channel_, *framing_),
+      writer_(net, *channel_, *framing_),
       opened_(net.clock.now()),
       received_at_(opened_),
       pinged_at_(opened_) {}
@@ -143,8 +145,7 @@ Awaitable<void> StreamSession::read_loop() {
   take(received_);
   received_ = std::vector<std::byte>();
   while (!is_ended_) {
-    const asio::mutable_buffer into(inbox_.data(), inbox_.size());
-    const auto [error, got] = co_await channel_.read_some(into);
+    const auto [error, got] = co_await channel_->read_some(inbox_);
     if (error) break;
     const Instant start = net_.clock.now();
     received_at_ = start;
@@ -275,7 +276,7 @@ Awaitable<void> StreamSession::write_loop() {
       break;
     }
   }
-  channel_.shutdown_send();
+  channel_->shutdown_send();
 }
 
 // ---- the end
@@ -303,7 +304,7 @@ void StreamSession::end() {
   if (std::exchange(is_ended_, true)) return;
   phase_ = Phase::kClosing;
   if (feed_) feed_->close();
-  channel_.close();
+  channel_->close();
   writer_.ring();
 }
 
@@ -316,7 +317,7 @@ void StreamSession::cut(ByeReason reason, std::string_view limit) {
 }
 
 void StreamSession::abort() {
-  channel_.reset();
+  channel_->reset();
   end();
 }
 
@@ -353,8 +354,9 @@ void StreamSession::sweep(Instant now) {
 
 }  // namespace
 
-void start_stream_session(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start) {
-  const auto executor = channel.executor();
+void start_stream_session(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                          StreamStart start) {
+  const auto executor = channel->executor();
   const auto session =
       std::make_shared<StreamSession>(net, sweeper, std::move(channel), std::move(pass), std::move(start));
   const auto ended = [session, &net](const std::exception_ptr& fault) {

@@ -20,6 +20,7 @@ struct StreamStart {
 };
 
 /// On the thread of `sweeper`, which is that of `channel`.
-void start_stream_session(NetContext& net, Sweeper& sweeper, Channel channel, ConnectionPass pass, StreamStart start);
+void start_stream_session(NetContext& net, Sweeper& sweeper, std::unique_ptr<Channel> channel, ConnectionPass pass,
+                          StreamStart start);
 
 }  // namespace talus::server

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <asio/ip/address.hpp>
 #include <optional>
+#include <ranges>
 
 #include "server/net/url_text.hpp"
 
@@ -63,9 +64,9 @@ bool TrustedProxies::contains(const WholeAddress& address) const {
 
 WholeAddress TrustedProxies::client_of(const WholeAddress& peer, const HttpRequest& request) const {
   WholeAddress out = peer;
-  for (std::size_t i = request.field_count; i-- > 0;) {
-    if (!equal_ignoring_case(request.fields[i].name, "x-forwarded-for")) continue;
-    std::string_view rest = request.fields[i].value;
+  for (const HttpField& field : std::ranges::reverse_view(request.fields)) {
+    if (!equal_ignoring_case(field.name, "x-forwarded-for")) continue;
+    std::string_view rest = field.value;
     while (!rest.empty()) {
       const std::size_t comma = rest.rfind(',');
       const std::string_view last = comma == std::string_view::npos ? rest : rest.substr(comma + 1);

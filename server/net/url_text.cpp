@@ -83,13 +83,18 @@ QueryValue query_value(std::string_view query, std::string_view name) {
 }
 
 std::optional<std::size_t> split_path(std::string_view path, std::span<std::string_view> out) {
-  for (std::size_t count = 0; count < out.size();) {
-    const std::size_t slash = path.find('/');
-    out[count++] = path.substr(0, slash);
-    if (slash == std::string_view::npos) return count;
-    path.remove_prefix(slash + 1);
+  // Parts are shorter than what a call to find one's end costs.
+  std::size_t count = 0;
+  const char* begin = path.data();
+  for (const char& c : path) {
+    if (c != '/') continue;
+    if (count == out.size()) return std::nullopt;
+    out[count++] = {begin, static_cast<std::size_t>(&c - begin)};
+    begin = &c + 1;
   }
-  return std::nullopt;
+  if (count == out.size()) return std::nullopt;
+  out[count++] = {begin, static_cast<std::size_t>(path.data() + path.size() - begin)};
+  return count;
 }
 
 }  // namespace talus::server

@@ -53,10 +53,10 @@ void check_second_reading(std::string_view head, const talus::server::HttpReques
   std::string target(request.path.empty() ? "*" : request.path);
   if (!request.query.empty()) target.append("?").append(request.query);
   TALUS_CHECK(second.url.ends_with(target) || second.url.ends_with(target + "?"));
-  TALUS_CHECK(second.fields.size() == request.field_count);
-  for (std::size_t i = 0; i < request.field_count; ++i) {
-    TALUS_CHECK(second.fields[i].first == request.fields[i].name);
-    TALUS_CHECK(talus::server::trimmed(second.fields[i].second) == request.fields[i].value);
+  TALUS_CHECK(second.fields.size() == request.fields.size());
+  for (std::size_t i = 0; const auto& [name, value] : request.fields) {
+    TALUS_CHECK(second.fields[i].first == name);
+    TALUS_CHECK(talus::server::trimmed(second.fields[i++].second) == value);
   }
 }
 
@@ -92,10 +92,10 @@ int fuzz_one(const std::uint8_t* data, std::size_t size) {
   };
   TALUS_CHECK(is_inside(request->path) && is_inside(request->query));
   std::size_t hosts = 0;
-  for (std::size_t i = 0; i < request->field_count; ++i) {
-    TALUS_CHECK(is_inside(request->fields[i].name) && is_inside(request->fields[i].value));
-    TALUS_CHECK(request->fields[i].value.find_first_of("\r\n") == std::string_view::npos);
-    if (equal_ignoring_case(request->fields[i].name, "host")) ++hosts;
+  for (const auto& [name, value] : request->fields) {
+    TALUS_CHECK(is_inside(name) && is_inside(value));
+    TALUS_CHECK(value.find_first_of("\r\n") == std::string_view::npos);
+    if (equal_ignoring_case(name, "host")) ++hosts;
   }
   TALUS_CHECK(hosts <= 1 && (hosts == 1 || request->is_http_1_0));
   TALUS_CHECK(!(request->field("content-length") && request->field("transfer-encoding")));

@@ -174,7 +174,7 @@ TEST(WebSocketHandshake, SaysWhatIsMissing) {
   const auto status = [](std::initializer_list<HttpField> fields) {
     HttpRequest request;
     request.method = HttpMethod::kGet;
-    for (const HttpField& field : fields) request.fields.at(request.field_count++) = field;
+    for (const HttpField& field : fields) request.fields.push(field);
     const auto done = websocket_handshake(request);
     return done ? 101 : done.error().status;
   };

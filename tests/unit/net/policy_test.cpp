@@ -44,7 +44,7 @@ WholeAddress v4(unsigned char a, unsigned char b, unsigned char c, unsigned char
 WholeAddress client_behind(const TrustedProxies& proxies, const WholeAddress& peer,
                            std::initializer_list<std::string_view> forwarded) {
   HttpRequest request;
-  for (const std::string_view value : forwarded) request.fields[request.field_count++] = {"X-Forwarded-For", value};
+  for (const std::string_view value : forwarded) request.fields.push({"X-Forwarded-For", value});
   return proxies.client_of(peer, request);
 }
 

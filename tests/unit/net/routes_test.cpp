@@ -27,8 +27,7 @@ class Routes : public testing::Test {
     request.path = path;
     request.query = query;
     if (!if_none_match.empty()) {
-      request.fields[0] = {"If-None-Match", if_none_match};
-      request.field_count = 1;
+      request.fields.push({"If-None-Match", if_none_match});
     }
     static const StaticFiles kFiles;
     static const std::string kList = "{}";
