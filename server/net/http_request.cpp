@@ -1,5 +1,7 @@
 #include "server/net/http_request.hpp"
 
+#include <http_parser.h>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -106,16 +108,17 @@ std::size_t end_of_text(std::string_view bytes, std::size_t from, std::size_t to
   return from;
 }
 
-/// Nothing for what is no method of RFC 9110, RFC 5789 or WebDAV (RFC 4918).
-std::optional<HttpMethod> method_of(std::string_view name) {
-  constexpr std::array<std::string_view, 13> kOthers{"POST",    "PUT",  "DELETE",   "PATCH",     "TRACE",
-                                                     "CONNECT", "COPY", "PROPFIND", "PROPPATCH", "MKCOL",
-                                                     "MOVE",    "LOCK", "UNLOCK"};
-  if (name == "GET") return HttpMethod::kGet;
-  if (name == "HEAD") return HttpMethod::kHead;
-  if (name == "OPTIONS") return HttpMethod::kOptions;
-  if (std::ranges::find(kOthers, name) != kOthers.end()) return HttpMethod::kOther;
-  return std::nullopt;
+HttpMethod method_of(unsigned method) {
+  switch (method) {
+    case HTTP_GET:
+      return HttpMethod::kGet;
+    case HTTP_HEAD:
+      return HttpMethod::kHead;
+    case HTTP_OPTIONS:
+      return HttpMethod::kOptions;
+    default:
+      return HttpMethod::kOther;
+  }
 }
 
 /// Splits a target in origin form, absolute form or `*` (which becomes an empty path).
@@ -147,6 +150,7 @@ std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& lim
   std::optional<std::uint64_t> length;
   std::optional<bool> is_chunked;
   for (const HttpField& field : request.fields) {
+    if (!is_all(kTokenChar, field.name)) return kFieldName;
     if (equal_ignoring_case(field.name, "host")) {
       if (!is_all(kHostChar, field.value)) return kHost;
       ++hosts;
@@ -167,18 +171,54 @@ std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& lim
   return std::nullopt;
 }
 
-/// Method, target and version, with one space between each.
-std::optional<HttpFault> read_request_line(std::string_view line, HttpRequest& out) {
-  const std::size_t target = line.find(' ') + 1;  // 0 without a space
-  const std::size_t version = line.find(' ', target) + 1;
-  if (target == 0 || version == 0 || line.find(' ', version) != std::string_view::npos) return kGrammar;
-  const auto method = method_of(line.substr(0, target - 1));
-  if (!method) return kGrammar;
-  out.method = *method;
-  if (line.substr(version) != "HTTP/1.1" && line.substr(version) != "HTTP/1.0") return kVersion;
-  out.is_http_1_0 = line.back() == '0';
-  if (!split_target(line.substr(target, version - 1 - target), out)) return kTarget;
-  return std::nullopt;
+/// What http_parser tells of one head, all of which it is given at once: a name, a value or a target comes in one
+/// piece, but for a value with a line end or a colon of its own, which comes in adjacent ones.
+struct Told {
+  HttpRequest& request;
+  std::string_view target;
+  HttpField field;
+  bool is_complete = false;
+
+  static Told& by(http_parser* parser) { return *static_cast<Told*>(parser->data); }
+  static void extend(std::string_view& view, const char* at, std::size_t size) {
+    if (view.empty()) view = {at, size};
+    view = {view.data(), static_cast<std::size_t>(at + size - view.data())};
+  }
+  /// False without room for it.
+  bool end_field() {
+    if (field.name.empty()) return true;
+    if (request.fields.size() == HttpFields::kMax) return false;
+    request.fields.push({field.name, trimmed(field.value)});
+    field = {};
+    return true;
+  }
+};
+
+const http_parser_settings& head_callbacks() {
+  static const http_parser_settings kCallbacks = [] {
+    http_parser_settings callbacks;
+    http_parser_settings_init(&callbacks);
+    callbacks.on_url = [](http_parser* p, const char* at, std::size_t size) {
+      Told::extend(Told::by(p).target, at, size);
+      return 0;
+    };
+    callbacks.on_header_field = [](http_parser* p, const char* at, std::size_t size) {
+      Told& told = Told::by(p);
+      if (told.field.value.data() != nullptr && !told.end_field()) return 1;
+      Told::extend(told.field.name, at, size);
+      return 0;
+    };
+    callbacks.on_header_value = [](http_parser* p, const char* at, std::size_t size) {
+      Told::extend(Told::by(p).field.value, at, size);
+      return 0;
+    };
+    callbacks.on_headers_complete = [](http_parser* p) {
+      Told::by(p).is_complete = Told::by(p).end_field();
+      return 0;
+    };
+    return callbacks;
+  }();
+  return kCallbacks;
 }
 
 }  // namespace
@@ -237,20 +277,27 @@ bool HttpRequest::lists(std::string_view name, std::string_view token) const {
 }
 
 std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits& limits, HttpRequest& request) {
-  std::size_t end = head.find('\r');
-  if (const auto fault = read_request_line(head.substr(0, end), request)) return fault;
-  for (head.remove_prefix(end + kLineEnd.size()); head.size() > kLineEnd.size();
-       head.remove_prefix(end + kLineEnd.size())) {
-    end = head.find('\r');
-    const std::string_view line = head.substr(0, end);
-    const std::size_t colon = line.find(':');
-    if (colon == 0 || colon == std::string_view::npos || !is_all(kTokenChar, line.substr(0, colon))) return kFieldName;
-    if (request.fields.size() == HttpFields::kMax) return kManyFields;
-    request.fields.push({line.substr(0, colon), trimmed(line.substr(colon + 1))});
+  Told told{request, {}, {}};
+  http_parser parser;
+  http_parser_init(&parser, HTTP_REQUEST);
+  parser.allow_chunked_length = 1;  // refused below, with a reason of its own
+  parser.data = &told;
+  const std::size_t taken = http_parser_execute(&parser, &head_callbacks(), head.data(), head.size());
+  // An upgrade ends the parser's work on the last byte of the head; a declared body lies behind it.
+  if (!told.is_complete || HTTP_PARSER_ERRNO(&parser) != HPE_OK || (taken != head.size() && parser.upgrade == 0)) {
+    return kGrammar;
   }
+  // It forgives runs of spaces, behind which another server may see another target.
+  const std::string_view line = head.substr(0, head.find('\r'));
+  if (std::ranges::count(line, ' ') != 2) return kGrammar;
+  if (parser.http_major != 1 || parser.http_minor > 1) return kVersion;
+  request.method = method_of(parser.method);
+  request.is_http_1_0 = parser.http_minor == 0;
   request.is_keep_alive =
       request.is_http_1_0 ? request.lists("connection", "keep-alive") : !request.lists("connection", "close");
-  return check_fields(request, limits);
+  if (const auto fault = check_fields(request, limits)) return fault;
+  if (!split_target(told.target, request)) return kTarget;
+  return std::nullopt;
 }
 
 std::expected<HttpRequest, HttpFault> parse_head(std::string_view head, const NetLimits& limits) {

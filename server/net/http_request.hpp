@@ -1,8 +1,7 @@
 // One HTTP/1.1 request head: found in the bytes of a connection, then parsed. Pure; views point into those bytes.
 //
-// Strict, since smuggling lives on what is forgiven: bare line feeds, folded lines, space before a colon, several
-// hosts, lengths that disagree are all refused. `tests/fuzz` holds that what is let in is what http_parser reads as
-// well.
+// http_parser reads it. Stricter than that, since smuggling lives on what is forgiven: bare line feeds, folded lines,
+// space before a colon, several hosts, lengths that disagree are all refused.
 #pragma once
 
 #include <array>
