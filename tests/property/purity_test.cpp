@@ -14,7 +14,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 17;
+constexpr std::uint64_t kPuritySeed = 17;
 using Bytes = std::vector<std::byte>;
 
 Bytes bytes_of(const WorldFunction& world, const ChunkKey& key, ChunkScratch& scratch) {
@@ -24,7 +24,7 @@ Bytes bytes_of(const WorldFunction& world, const ChunkKey& key, ChunkScratch& sc
 }
 
 std::vector<ChunkKey> keys_of(const WorldFunction& world) {
-  test::Random random(kSeed);
+  test::Random random(kPuritySeed);
   std::vector<ChunkKey> keys;
   for (int n = 0; n < 96; ++n) keys.push_back(test::random_surface_key(world, random, n % 9));
   return keys;

@@ -58,14 +58,14 @@ double excess(const Chi& chi) {
 TEST(RockShares, MatchTheProbabilitiesOfTheirLayersNearTheOriginAndFarOut) {
   const WorldFunction world{Manifest()};
   for (const double origin_m : {0.0, 1e9}) {
-    constexpr std::uint64_t kSeed = 4711;
-    test::Random random(kSeed);
+    constexpr std::uint64_t kShareSeed = 4711;
+    test::Random random(kShareSeed);
     Chi chi;
     for (int n = 0; n < 60; ++n) {
       const LayerPlace place{n % world.terms().strata->sets(), static_cast<int>(random.whole(0, kLayers - 1))};
       add_layer(world, random, place, origin_m, chi);
     }
-    EXPECT_LT(excess(chi), 4.5) << "chi-square " << chi.sum << " of " << chi.freedom << ", seed " << kSeed;
+    EXPECT_LT(excess(chi), 4.5) << "chi-square " << chi.sum << " of " << chi.freedom << ", seed " << kShareSeed;
     EXPECT_GT(excess(chi), -4.5) << "too even for chance: " << chi.sum << " of " << chi.freedom;
     RecordProperty("chi_square", std::to_string(chi.sum) + " of " + std::to_string(chi.freedom));
   }

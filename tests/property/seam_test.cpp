@@ -17,13 +17,13 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 8;
+constexpr std::uint64_t kSeamSeed = 8;
 constexpr int kKeysPerLod = 160;
 
 /// What a chunk looks like to a client: built, encoded, decoded.
-class Wire {
+class WireBytes {
  public:
-  explicit Wire(const WorldFunction& world) : world_(world) {}
+  explicit WireBytes(const WorldFunction& world) : world_(world) {}
 
   std::optional<ChunkMesh> operator()(const ChunkKey& key) {
     ChunkMesh mesh;
@@ -62,8 +62,8 @@ std::vector<FaceVertex> on_face(const ChunkMesh& mesh, int axis, int at) {
 
 TEST(Seams, OfOneLodAreBitEqualAfterDecoding) {
   const WorldFunction world{Manifest()};
-  Wire wire(world);
-  test::Random random(kSeed);
+  WireBytes wire(world);
+  test::Random random(kSeamSeed);
   int faces = 0;
   std::size_t vertices = 0;
   for (int lod = 0; lod <= kLodMax; ++lod) {
@@ -77,7 +77,7 @@ TEST(Seams, OfOneLodAreBitEqualAfterDecoding) {
       const auto from_here = here ? on_face(*here, axis, world.cells() * kStepsPerCell) : std::vector<FaceVertex>();
       const auto from_there = there ? on_face(*there, axis, 0) : std::vector<FaceVertex>();
       ASSERT_EQ(from_here, from_there) << "lod " << key.lod << " at " << key.x << ' ' << key.y << ' ' << key.z
-                                       << ", axis " << axis << ", seed " << kSeed;
+                                       << ", axis " << axis << ", seed " << kSeamSeed;
       faces += from_here.empty() ? 0 : 1;
       vertices += from_here.size();
     }

@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 43;
+constexpr std::uint64_t kSpectrumSeed = 43;
 constexpr int kSamples = 128;
 /// Bands of wavenumbers, each twice as fine as the one before: 1..2, 2..4 ... 32..63 waves a row.
 constexpr std::size_t kBands = 6;
@@ -44,7 +44,7 @@ struct Spectrum {
 
 Spectrum spectrum_at(const WorldFunction& world, double far_m, std::int64_t step) {
   Spectrum out;
-  test::Random random(kSeed);
+  test::Random random(kSpectrumSeed);
   ColumnBlock block;
   const auto far = static_cast<std::int64_t>(far_m);
   for (int n = 0; n < 900 && out.rows < 240; ++n) {
@@ -77,7 +77,7 @@ TEST(Spectrum, IsTheSameAtABillionMetresAsAtTheOrigin) {
     for (std::size_t b = 0; b < kBands; ++b) {
       // Single rows differ by e^2 and more, from plain to range; means of 240 by a standard error of about 0.2.
       EXPECT_NEAR(there.log_power[b], here.log_power[b], 0.8)
-          << "band " << b << " at a step of " << step << " m, seed " << kSeed;
+          << "band " << b << " at a step of " << step << " m, seed " << kSpectrumSeed;
     }
   }
 }
@@ -86,7 +86,7 @@ TEST(Spectrum, WouldShowStairsOfTheWidthOfAFloat) {
   // What positions in floats would do at 10^9 m, 64 m apart: rows sampled in steps, whose fine bands are those of
   // walls.
   const WorldFunction world{Manifest()};
-  test::Random random(kSeed);
+  test::Random random(kSpectrumSeed);
   ColumnBlock block;
   Bands smooth{};
   Bands stairs{};

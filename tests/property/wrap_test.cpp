@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kSeed = 31;
+constexpr std::uint64_t kWrapSeed = 31;
 constexpr std::int64_t kPeriod = 2 * 131'072;
 
 Manifest wrapping() {
@@ -24,7 +24,7 @@ Manifest wrapping() {
 
 TEST(Wrap, RepeatsWholeChunksBitForBitAtEveryLod) {
   const WorldFunction world{wrapping()};
-  test::Random random(kSeed);
+  test::Random random(kWrapSeed);
   ChunkScratch scratch;
   ChunkMesh here;
   ChunkMesh there;
@@ -40,9 +40,9 @@ TEST(Wrap, RepeatsWholeChunksBitForBitAtEveryLod) {
     other.x += key.x > 0 ? -3 * turn : 2 * turn;
     const ChunkKind kind = build_chunk(world, key, scratch, here);
     ASSERT_EQ(build_chunk(world, other, scratch, there), kind);
-    ASSERT_EQ(here.positions, there.positions) << "lod " << lod << ", seed " << kSeed << ", round " << n;
+    ASSERT_EQ(here.positions, there.positions) << "lod " << lod << ", seed " << kWrapSeed << ", round " << n;
     ASSERT_EQ(here.indices, there.indices);
-    ASSERT_EQ(here.materials, there.materials) << "lod " << lod << ", seed " << kSeed << ", round " << n;
+    ASSERT_EQ(here.materials, there.materials) << "lod " << lod << ", seed " << kWrapSeed << ", round " << n;
     ASSERT_EQ(here.ridges, there.ridges);
     ASSERT_EQ(here.normals, there.normals);
     surfaces += kind == ChunkKind::kMesh ? 1 : 0;
@@ -52,7 +52,7 @@ TEST(Wrap, RepeatsWholeChunksBitForBitAtEveryLod) {
 
 TEST(Wrap, HasNoSeam) {
   const WorldFunction world{wrapping()};
-  test::Random random(kSeed);
+  test::Random random(kWrapSeed);
   ColumnBlock block;
   for (int n = 0; n < 40; ++n) {
     world.columns({kPeriod * random.whole(-2, 2) - 16, random.whole(-1'000'000, 1'000'000), 1, 33, 33, 1}, block);
@@ -66,7 +66,7 @@ TEST(Wrap, HasNoSeam) {
         if (i < 13 || i > 17) elsewhere = std::max(elsewhere, rise(i));
       }
       // Bends of a row at the seam, columns 15 to 17, are of the size of bends anywhere; a step of 2 m would not be.
-      for (std::size_t i = 13; i <= 17; ++i) ASSERT_LT(rise(i), 3 * elsewhere + 0.5) << "seed " << kSeed;
+      for (std::size_t i = 13; i <= 17; ++i) ASSERT_LT(rise(i), 3 * elsewhere + 0.5) << "seed " << kWrapSeed;
     }
   }
 }

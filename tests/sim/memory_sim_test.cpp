@@ -25,7 +25,7 @@ constexpr bool kHasOwnMalloc = false;
 constexpr bool kHasOwnMalloc = true;
 #endif
 
-constexpr std::uint64_t kCredit = 64 << 20;
+constexpr std::uint64_t kReaderCredit = 64 << 20;
 
 class MemorySim : public testing::TestWithParam<Carrier> {
  protected:
@@ -48,13 +48,13 @@ TEST_P(MemorySim, KeepsAnIdleStreamInSixteenKiBAtMost) {
   constexpr std::size_t kBytesMax = 16 * 1024;
   RunningServer server(settings());
   StreamPeer first(door(server), GetParam());
-  ASSERT_TRUE(first.open(kCredit));
+  ASSERT_TRUE(first.open(kReaderCredit));
   std::vector<std::unique_ptr<StreamPeer>> peers;
   peers.reserve(kPeers);
   const std::size_t before = ::mallinfo2().uordblks;
   for (std::size_t i = 0; i < kPeers; ++i) {
     peers.push_back(std::make_unique<StreamPeer>(door(server), GetParam()));
-    ASSERT_TRUE(peers.back()->open(kCredit));
+    ASSERT_TRUE(peers.back()->open(kReaderCredit));
     // A long message now and then leaves nothing behind.
     protocol::Want want;
     want.chunks.assign(1000, {{0, 0, 10'000, 0}, 0});
@@ -89,7 +89,7 @@ TEST_P(MemorySim, PinsLittleOfTheKernelsMemoryForAReaderThatTakesNothing) {
   constexpr std::size_t kBytesMax = 512 * 1024;
   RunningServer server(settings());
   StreamPeer stream(door(server), GetParam());
-  ASSERT_TRUE(stream.open(kCredit));
+  ASSERT_TRUE(stream.open(kReaderCredit));
   stream.look_from(0, 6000);
   // The most it ever is, until the server cuts who takes nothing.
   std::size_t held = 0;

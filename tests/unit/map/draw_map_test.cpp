@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/default_world.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace talus {
 namespace {
@@ -134,12 +135,13 @@ TEST(Map, LightensSlopesThatFaceTheNorthWestLamp) {
 }
 
 TEST(Map, ShowsSomethingOnEveryLayerAndKnowsThemByName) {
+  constexpr int kEdge = test::kIsSanitized ? 48 : 128;
   for (std::size_t layer = 0; layer < kMapLayerNames.size(); ++layer) {
     ASSERT_EQ(map_layer(kMapLayerNames[layer]), static_cast<MapLayer>(layer));
-    const MapView view{-4096, -4096, 64, 2, 128, 128};
+    const MapView view{-4096, -4096, 64, 2, kEdge, kEdge};
     const auto rgb = drawn(view, {static_cast<MapLayer>(layer), 0});
     std::set<std::array<std::uint8_t, 3>> colours;
-    for (int p = 0; p < 128 * 128; ++p) colours.insert(pixel(rgb, view, p, 0));
+    for (int p = 0; p < kEdge * kEdge; ++p) colours.insert(pixel(rgb, view, p, 0));
     EXPECT_GT(colours.size(), 20U) << kMapLayerNames[layer];
   }
   EXPECT_FALSE(map_layer("shade"));

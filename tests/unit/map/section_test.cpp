@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/default_world.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace talus {
 namespace {
@@ -34,12 +35,13 @@ Cut cut(const SectionView& view) {
 }
 
 TEST(Section, HasSkyAboveTheGroundSeaBelowZeroAndRockUnderBoth) {
-  const Cut c = cut({{-30'000, 0}, {30'000, 4000}, -900, 2600, 600, 500});
+  constexpr int kColumns = test::rounds(600);
+  const Cut c = cut({{-30'000, 0}, {30'000, 4000}, -900, 2600, kColumns, 500});
   ColumnBlock block;
   int sea = 0;
   int land = 0;
-  for (int i = 0; i < 600; i += 3) {
-    const double along = (i + 0.5) / 600;
+  for (int i = 0; i < kColumns; i += 3) {
+    const double along = (i + 0.5) / kColumns;
     const auto x = static_cast<std::int64_t>(std::floor(-30'000 + 60'000 * along));
     const auto z = static_cast<std::int64_t>(std::floor(4000 * along));
     world().columns({x, z, 1, 1, 1, 1.0}, block);
@@ -57,8 +59,8 @@ TEST(Section, HasSkyAboveTheGroundSeaBelowZeroAndRockUnderBoth) {
       ++land;
     }
   }
-  EXPECT_GT(sea, 10);
-  EXPECT_GT(land, 10);
+  EXPECT_GT(sea, test::rounds(10));
+  EXPECT_GT(land, test::rounds(10));
 }
 
 TEST(Section, ReachesAsHighAndLowAsTheGround) {

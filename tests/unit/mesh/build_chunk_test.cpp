@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/surface_key.hpp"
 
@@ -33,7 +34,7 @@ TEST(BuildChunk, GivesTheSameMeshWhateverWasBuiltBefore) {
   test::Random random(kChunkSeed);
   ChunkScratch used;
   ChunkMesh again;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::rounds(60); ++round) {
     const ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, kLodMax)));
     ChunkScratch fresh;
     ChunkMesh first;
@@ -67,7 +68,7 @@ TEST(BuildChunk, PutsNoVertexTwiceAndNoTriangleFlat) {
   ChunkMesh mesh;
   std::size_t triangles = 0;
   std::size_t facing_up = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::rounds(60); ++round) {
     const ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, 8)));
     if (build_chunk(world, key, scratch, mesh) != ChunkKind::kMesh) continue;
     std::map<std::array<int, 3>, int> places;
@@ -86,7 +87,7 @@ TEST(BuildChunk, PutsNoVertexTwiceAndNoTriangleFlat) {
     }
     triangles += mesh.triangles();
   }
-  EXPECT_GT(triangles, 50'000U) << "too little was looked at";
+  EXPECT_GT(triangles, static_cast<std::size_t>(test::rounds(50'000))) << "too little was looked at";
   EXPECT_GT(facing_up, triangles / 100 * 95);
 }
 
@@ -95,7 +96,7 @@ TEST(BuildChunk, SaysAirAndRockWhereThereIsNoSurface) {
   test::Random random(kChunkSeed);
   ChunkScratch scratch;
   ChunkMesh mesh;
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < test::rounds(40); ++round) {
     ChunkKey key = random_surface_key(world, random, static_cast<int>(random.whole(0, 5)));
     key.y += 200;
     EXPECT_EQ(build_chunk(world, key, scratch, mesh), ChunkKind::kAir);
@@ -112,7 +113,7 @@ TEST(BuildChunk, PointsNormalsAwayFromRock) {
   ChunkMesh mesh;
   std::size_t triangles = 0;
   std::size_t against = 0;
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < test::rounds(20); ++round) {
     if (build_chunk(world, random_surface_key(world, random, 0), scratch, mesh) != ChunkKind::kMesh) continue;
     for (const auto& n : mesh.normals) ASSERT_NEAR(n.x * n.x + n.y * n.y + n.z * n.z, 1.0f, 1e-5f);
     for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
@@ -134,7 +135,7 @@ TEST(BuildChunk, ClosesItsSurfaceButForTheChunksFaces) {
   ChunkScratch scratch;
   ChunkMesh mesh;
   int edges_seen = 0;
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < test::rounds(40); ++round) {
     if (build_chunk(world, random_surface_key(world, random, static_cast<int>(random.whole(0, 6))), scratch, mesh) !=
         ChunkKind::kMesh)
       continue;
@@ -153,7 +154,7 @@ TEST(BuildChunk, ClosesItsSurfaceButForTheChunksFaces) {
     }
     edges_seen += static_cast<int>(edges.size());
   }
-  EXPECT_GT(edges_seen, 50'000);
+  EXPECT_GT(edges_seen, test::rounds(50'000));
 }
 
 }  // namespace

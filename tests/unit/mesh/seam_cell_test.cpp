@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace talus {
 namespace {
@@ -163,7 +164,7 @@ Chain sum(const Chain& a, const Chain& b) {
 TEST(SeamCell, IsBoundedByTheDifferenceOfTheTwoSectionsInAllPatterns) {
   test::Random random(kCellSeed);
   for (unsigned pattern = 0; pattern < kSeamPatterns; ++pattern) {
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < test::rounds(8); ++round) {
       const Cell cell = random_cell(pattern, random);
       ASSERT_EQ(cell.pattern(), pattern);
       const auto places = cell.places();
@@ -177,7 +178,7 @@ TEST(SeamCell, IsBoundedByTheDifferenceOfTheTwoSectionsInAllPatterns) {
 TEST(SeamCell, UsesEverySegmentOfBothContoursOnceAndEveryDiagonalTwice) {
   test::Random random(kCellSeed);
   for (unsigned pattern = 0; pattern < kSeamPatterns; ++pattern) {
-    for (int round = 0; round < 10; ++round) {
+    for (int round = 0; round < test::rounds(10); ++round) {
       const Cell cell = random_cell(pattern, random);
       const auto places = cell.places();
       const SeamTriangles triangles = seam_triangles(pattern, places);

@@ -9,6 +9,7 @@
 
 #include "core/plates/macro_nodes.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/rounds.hpp"
 #include "tests/support/simd_targets.hpp"
 
 namespace talus {
@@ -56,7 +57,7 @@ TEST(MacroField, GivesAColumnTheSameBitsInEveryGridAtEveryStepWhateverIsRemember
   const MacroField field = field_of(1);
   test::Random random(kFieldSeed);
   MacroScratch used;
-  for (int round = 0; round < 120; ++round) {
+  for (int round = 0; round < test::rounds(120); ++round) {
     const std::int64_t step = std::int64_t{1} << random.whole(0, 12);
     const std::int64_t reach = round % 2 == 0 ? 2'000 : 1'000'000'000 / step;
     // Every fourth grid does not lie on the lattice of its own step.
@@ -100,7 +101,7 @@ TEST(MacroField, HasTheSlopesThatItsHeightsHave) {
   MacroScratch scratch;
   double worst = 0;
   int steep = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < test::rounds(400); ++round) {
     const glm::i64vec2 at{random.whole(-400'000, 400'000), random.whole(-400'000, 400'000)};
     const Sampled s = sampled(field, metre_nodes(at, 33, 33), scratch);
     // Over 32 m, where a float's rounding of some 0.1 mm hides nothing; the curvature's part is a tenth of the bound.
@@ -116,7 +117,7 @@ TEST(MacroField, HasTheSlopesThatItsHeightsHave) {
     worst = std::max(worst, error);
     steep += slope > 0.1 ? 1 : 0;
   }
-  EXPECT_GT(steep, 20) << "nothing had a slope";
+  EXPECT_GT(steep, test::rounds(20)) << "nothing had a slope";
   RecordProperty("worst_error", std::to_string(worst));
 }
 
