@@ -39,14 +39,22 @@ std::vector<Amounts> amounts_above(const LayerSet& set) {
 
 void DominantRock::add(const LayerSet& set) {
   const std::vector<Amounts> above = amounts_above(set);
+  std::vector<std::size_t> rocks;  // that the set holds at all: a third of the materials
+  for (std::size_t n = 0; n < above.back().size(); ++n) {
+    if (above.back()[n] > 0) rocks.push_back(n);
+  }
   for (int span = 0; span < kSpans; ++span) {
     const int half = static_cast<int>(kSpanLow_m / 2) << span;
     for (int slice = 0; slice < kSlices; ++slice) {
       const Amounts& low = above[static_cast<std::size_t>(std::max(slice - half, 0))];
       const Amounts& high = above[static_cast<std::size_t>(std::min(slice + half, kSlices))];
       std::size_t most = 0;
-      for (std::size_t n = 1; n < low.size(); ++n) {
-        if (high[n] - low[n] > high[most] - low[most]) most = n;
+      double most_m = 0;
+      for (const std::size_t n : rocks) {
+        const double metres = high[n] - low[n];
+        if (!(metres > most_m)) continue;
+        most = n;
+        most_m = metres;
       }
       rocks_.push_back(static_cast<Material>(most));
     }
