@@ -1,6 +1,7 @@
 # Language, warnings and switches that hold for every target of the project.
 
 option(TALUS_TESTS "Build the tests" ON)
+option(TALUS_TESTS_TOGETHER "Compile the sources of tests eight at a time, for machines that build them once; sanitizers do" OFF)
 option(TALUS_BENCH "Build the benchmark programs" OFF)
 option(TALUS_TIDY "Read every source with clang-tidy, as tests; see TalusTidy" OFF)
 set(TALUS_SANITIZE "" CACHE STRING "Sanitizers of this build: empty, address or thread")

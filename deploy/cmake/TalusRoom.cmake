@@ -1,10 +1,7 @@
-# talus_read_together(TARGET): under the sanitizers a room's sources are compiled eight at a time, which reads the headers
-# of the standard library and Asio once for all of them: half the time, and nobody changes one source and builds again
-# there. Kernels stay alone: Highway compiles each several times over.
+# talus_read_together(TARGET): its sources are compiled eight at a time, which reads the headers of the standard library
+# and Asio once for all of them: half the time, where nobody changes one source and builds again. Kernels stay alone:
+# Highway compiles each several times over.
 function(talus_read_together target)
-  if(NOT TALUS_SANITIZE)
-    return()
-  endif()
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source)
@@ -25,7 +22,9 @@ function(talus_room name)
   file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC ${ROOM_PUBLIC} PRIVATE talus_compile ${ROOM_PRIVATE})
-  talus_read_together(${name})
+  if(TALUS_SANITIZE)
+    talus_read_together(${name})
+  endif()
   # What an engine may link; TalusInstall installs it.
   file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   if(folder MATCHES "^(core/|protocol$|client_sample/library$)")
