@@ -26,7 +26,9 @@ find_program(TALUS_FLATC flatc REQUIRED)
 
 add_library(talus_asio INTERFACE)
 target_include_directories(talus_asio SYSTEM INTERFACE "${TALUS_ASIO_INCLUDE}")
-target_compile_definitions(talus_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+# Asio 1.22 finds out about aligned_alloc by which header was read before it, so that one source would allocate with it and
+# another free what operator new gave.
+target_compile_definitions(talus_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED ASIO_HAS_STD_ALIGNED_ALLOC=1)
 target_link_libraries(talus_asio INTERFACE Threads::Threads)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Asio's coroutine frames are allocated and freed by its own pair of functions; with sanitizers g++ 12 inlines one only.

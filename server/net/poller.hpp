@@ -2,7 +2,7 @@
 // as one descriptor.
 //
 // Problem: Asio reads once more after every answer, only to hear that nothing is there, and each wait passes its queue
-// and its locks; both together are a quarter of what a cached chunk costs. Answer: edges are told straight from
+// and its locks, which is a good part of what a cached chunk costs. Answer: edges are told straight from
 // epoll_wait to the socket's owner, many of them for one turn of the io_context. Owner: the thread of its io_context.
 #pragma once
 
