@@ -18,7 +18,8 @@ namespace {
 
 /// Voxels along the block's edges: what a picture of 200 m sees at any angle, from below the sea to above cliffs.
 constexpr int kPictureEdge = 288;
-constexpr int kPictureHeight = 144;
+constexpr int kPictureHeight = 224;
+/// Where it begins at a coast; inland the block lies around what is in the middle of the picture.
 constexpr int kPictureBottom = -16;
 /// Rays step this many voxels; a surface thinner than that may be missed.
 constexpr double kStep = 0.6;
@@ -35,7 +36,8 @@ class Block {
  public:
   Block(const WorldFunction& world, glm::dvec3 middle_m, const glm::dvec3& sun) : world_(world), sun_(sun) {
     const glm::i64vec3 middle(glm::floor(middle_m / world.voxel_m()));
-    samples_ = {{middle.x - kPictureEdge / 2, kPictureBottom, middle.z - kPictureEdge / 2},
+    const std::int64_t bottom = std::max<std::int64_t>(kPictureBottom, middle.y - kPictureHeight / 2);
+    samples_ = {{middle.x - kPictureEdge / 2, bottom, middle.z - kPictureEdge / 2},
                 kPictureEdge,
                 kPictureHeight,
                 kPictureEdge,
@@ -46,6 +48,9 @@ class Block {
     DensityBrick brick;
     sample_block(world, brick, samples_);
   }
+
+  /// Height of its lowest voxels.
+  double bottom_voxel() const { return static_cast<double>(samples_.corner_voxel.y); }
 
   bool holds(const glm::dvec3& p) const {
     return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < kPictureEdge - 1 && p.y < kPictureHeight - 1 &&
@@ -86,7 +91,7 @@ class Block {
   glm::vec3 colour(const glm::dvec3& p, const glm::dvec3& normal) const {
     const glm::ivec3 cell(p);
     const std::size_t column = static_cast<std::size_t>(cell.z) * kPictureEdge + static_cast<std::size_t>(cell.x);
-    const auto height = static_cast<float>((p.y + kPictureBottom) * world_.voxel_m());
+    const auto height = static_cast<float>((p.y + bottom_voxel()) * world_.voxel_m());
     const glm::i64vec2 voxel{samples_.corner_voxel.x + cell.x, samples_.corner_voxel.z + cell.z};
     if (normal.y > 0.75 && height > samples_.height_m[column] - 2) return light_of(0x6B7A45);
     const RockPlace place{samples_.stack_m[column], samples_.choice[column], height, voxel};
@@ -122,7 +127,7 @@ class Block {
 
 glm::vec3 pixel(const Block& block, const glm::dvec3& from, const glm::dvec3& direction, double reach, double rise) {
   const auto rock = block.first_rock(from, direction, 0, reach);
-  const double sea = direction.y < 0 ? (-kPictureBottom - from.y) / direction.y : reach;
+  const double sea = direction.y < 0 ? (-block.bottom_voxel() - from.y) / direction.y : reach;
   const glm::vec3 sky = glm::mix(kSkyLow, kSkyHigh, static_cast<float>(std::clamp(rise, 0.0, 1.0)));
   if (rock && glm::dot(*rock - from, direction) < sea) return block.shade(*rock);
   if (sea >= reach) return sky;
@@ -143,7 +148,8 @@ Picture draw_block(const WorldFunction& world, const BlockView& view, int width,
   const glm::dvec3 right(std::cos(yaw), 0, -std::sin(yaw));
   const glm::dvec3 up = glm::cross(right, forward);
   const Block block(world, view.middle_m, glm::normalize(right * kSun.x + glm::dvec3(0, kSun.y, 0) - forward * kSun.z));
-  const glm::dvec3 middle(kPictureEdge / 2.0, view.middle_m.y / world.voxel_m() - kPictureBottom, kPictureEdge / 2.0);
+  const glm::dvec3 middle(kPictureEdge / 2.0, view.middle_m.y / world.voxel_m() - block.bottom_voxel(),
+                          kPictureEdge / 2.0);
   const double scale = view.width_m / world.voxel_m() / width;
   constexpr double kReach = 2.0 * kPictureEdge;
   for_each_strip("block", height, [&](int k, int) {

@@ -15,7 +15,7 @@ namespace {
 constexpr int kViewEdgeMin = 16;  // pixels
 constexpr int kViewEdgeMax = 4096;
 constexpr double kViewPlaceMax_m = 1.0e9;
-constexpr double kViewHeightMax_m = 128;  // what a block reaches
+constexpr double kViewHeightMax_m = 8000;
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "core/erosion/filter.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numbers>
@@ -31,6 +32,7 @@ struct ErosionState {
   V ridge_target, ridge_mask;  ///< the same for the ridge map: no gully weight, no rounding
   V height, slope_x, slope_z;  ///< sums so far
   V magnitude;
+  V cut, cut_x, cut_z;  ///< by fine gullies
 };
 
 template <class D, class V = VecOf<D>>
@@ -52,6 +54,7 @@ HWY_INLINE ErosionState<V> before_octaves(D d, const ErosionTerms& t, V gx, V gz
   s.ridge_target = fade;
   s.ridge_mask = ease_out(d, hn::Mul(steepness, hn::Set(d, t.ridge_onset_input)));
   s.height = s.slope_x = s.slope_z = s.magnitude = hn::Zero(d);
+  s.cut = s.cut_x = s.cut_z = hn::Zero(d);
   return s;
 }
 
@@ -76,8 +79,15 @@ HWY_INLINE void add_gullies(D d, const ErosionTerms& t, const ErosionOctave& oct
   const V faded = mix(s.fade, hn::Mul(cosine, weight), s.mask);
   s.height = hn::Add(s.height, hn::Mul(faded, strength));
   const V shown = hn::Mul(s.mask, sine);
-  s.slope_x = hn::Add(s.slope_x, hn::Mul(shown, side_x));
-  s.slope_z = hn::Add(s.slope_z, hn::Mul(shown, side_z));
+  const V shown_x = hn::Mul(shown, side_x);
+  const V shown_z = hn::Mul(shown, side_z);
+  s.slope_x = hn::Add(s.slope_x, shown_x);
+  s.slope_z = hn::Add(s.slope_z, shown_z);
+  const V fine = hn::Set(d, octave.fine);
+  const V below = hn::Mul(hn::Mul(s.mask, weight), hn::Sub(hn::Set(d, 1.0f), cosine));
+  s.cut = hn::Add(s.cut, hn::Mul(hn::Mul(strength, fine), below));
+  s.cut_x = hn::Sub(s.cut_x, hn::Mul(shown_x, fine));
+  s.cut_z = hn::Sub(s.cut_z, hn::Mul(shown_z, fine));
   s.magnitude = hn::Add(s.magnitude, strength);
   s.fade = faded;
 
@@ -106,8 +116,13 @@ HWY_INLINE ErosionResult<V> fade_method(D d, const ErosionTerms& t, const Phacel
   for (std::size_t o = 0; o < static_cast<std::size_t>(t.octaves); ++o) {
     add_gullies(d, t, t.octave[o], rows[o], i, strength, s);
   }
-  return {hn::Add(s.height, hn::Mul(hn::Set(d, t.offset), s.magnitude)), s.slope_x, s.slope_z,
-          hn::Mul(s.ridge_target, hn::Sub(hn::Set(d, 1.0f), s.ridge_mask))};
+  return {hn::Add(s.height, hn::Mul(hn::Set(d, t.offset), s.magnitude)),
+          s.slope_x,
+          s.slope_z,
+          hn::Mul(s.ridge_target, hn::Sub(hn::Set(d, 1.0f), s.ridge_mask)),
+          s.cut,
+          s.cut_x,
+          s.cut_z};
 }
 
 /// Both methods by their shares. A lane's value is chosen by its own share and strength, so what its neighbours in the
@@ -133,7 +148,7 @@ void erode_row(const ErosionTerms& t, const ErosionRow& r) {
     const auto worn = hn::Gt(strength, zero);
     const auto some_frequency = hn::And(worn, hn::Gt(share, zero));
     const auto some_fade = hn::And(worn, hn::Lt(share, one));
-    ErosionResult<V> out{zero, zero, zero, zero};
+    ErosionResult<V> out{zero, zero, zero, zero, zero, zero, zero};
     if (!hn::AllFalse(d, some_fade)) out = fade_method(d, t, rows.data(), i, gx, gz, fade, strength);
     if (!hn::AllFalse(d, some_frequency)) {
       const auto other = frequency_method(d, t, rows.data(), i, gx, gz, fade, strength);
@@ -142,12 +157,17 @@ void erode_row(const ErosionTerms& t, const ErosionRow& r) {
         return hn::IfThenElse(some_frequency, both, a);
       };
       out = {blend(out.height, other.height), blend(out.slope_x, other.slope_x), blend(out.slope_z, other.slope_z),
-             blend(out.ridge, other.ridge)};
+             blend(out.ridge, other.ridge),   blend(out.cut, other.cut),         blend(out.cut_x, other.cut_x),
+             blend(out.cut_z, other.cut_z)};
     }
     hn::StoreU(hn::IfThenElseZero(worn, out.height), d, r.height + i);
     hn::StoreU(hn::IfThenElseZero(worn, out.slope_x), d, r.slope_x + i);
     hn::StoreU(hn::IfThenElseZero(worn, out.slope_z), d, r.slope_z + i);
     hn::StoreU(hn::IfThenElseZero(worn, out.ridge), d, r.ridge + i);
+    if (r.cut == nullptr) continue;
+    hn::StoreU(hn::IfThenElseZero(worn, out.cut), d, r.cut + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.cut_x), d, r.cut_x + i);
+    hn::StoreU(hn::IfThenElseZero(worn, out.cut_z), d, r.cut_z + i);
   }
 }
 
@@ -166,8 +186,12 @@ ErosionTerms terms_of(const ErosionControls& c, const std::array<Octave, kErosio
   t.octaves = c.octaves;
   double strength_m = c.strength * c.scale_m;
   double rounding = 1;
+  double width_m = c.scale_m;
   for (std::size_t o = 0; o < static_cast<std::size_t>(c.octaves); ++o) {
-    t.octave[o] = {f(strength_m), f(2 * std::numbers::pi * c.cell_scale * octaves[o].cells_per_m), f(rounding)};
+    const double fine = std::clamp((kFineNone_m - width_m) / (kFineNone_m - kFineFull_m), 0.0, 1.0);
+    t.octave[o] = {f(strength_m), f(2 * std::numbers::pi * c.cell_scale * octaves[o].cells_per_m), f(rounding),
+                   f(fine)};
+    width_m /= c.lacunarity;
     strength_m *= c.gain;
     rounding *= c.rounding_octave;
   }
@@ -218,6 +242,8 @@ void erode(const ErosionControls& c, const ColumnGrid& grid, const ErosionInput&
   TALUS_CHECK(out.slope_z.size() >= count && out.ridge.size() >= count);
 
   TALUS_CHECK(in.frequency_share.empty() || in.frequency_share.size() >= count);
+  TALUS_CHECK(out.cut_m.empty() || out.cut_m.size() >= count);
+  TALUS_CHECK(out.cut_x.size() == out.cut_m.size() && out.cut_z.size() == out.cut_m.size());
 
   std::array<Octave, kErosionOctavesMax> octaves{};
   std::array<Axis, kErosionOctavesMax> x;
@@ -234,9 +260,11 @@ void erode(const ErosionControls& c, const ColumnGrid& grid, const ErosionInput&
   const auto row = HWY_DYNAMIC_DISPATCH(erode_row);
   for (std::size_t k = 0; k < static_cast<std::size_t>(grid.depth); ++k) {
     const std::size_t at = k * stride;
-    row(terms, {&x, &z, k, static_cast<std::size_t>(grid.width), &in.slope_x[at], &in.slope_z[at], &in.fade_target[at],
-                &in.strength[at], in.frequency_share.empty() ? nullptr : &in.frequency_share[at], &out.height_m[at],
-                &out.slope_x[at], &out.slope_z[at], &out.ridge[at]});
+    const auto asked = [at](std::span<float> array) { return array.empty() ? nullptr : &array[at]; };
+    row(terms,
+        {&x, &z, k, static_cast<std::size_t>(grid.width), &in.slope_x[at], &in.slope_z[at], &in.fade_target[at],
+         &in.strength[at], in.frequency_share.empty() ? nullptr : &in.frequency_share[at], &out.height_m[at],
+         &out.slope_x[at], &out.slope_z[at], &out.ridge[at], asked(out.cut_m), asked(out.cut_x), asked(out.cut_z)});
   }
 }
 

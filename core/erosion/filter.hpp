@@ -63,14 +63,23 @@ struct ErosionOutput {
   std::span<float> slope_x;   ///< approximate change of slope: fit for shading decisions, not for normals
   std::span<float> slope_z;
   std::span<float> ridge;  ///< ridge map, -1 (crease) .. +1 (ridge)
+  /// How far fine gullies cut below their own crests, in metres (>= 0), and the slope of that: what rock that
+  /// withstands them keeps. Peaks and valley floors have none. Gullies up to kFineFull_m wide count fully, those from
+  /// kFineNone_m on not at all. All three may be empty.
+  std::span<float> cut_m = {};
+  std::span<float> cut_x = {};
+  std::span<float> cut_z = {};
 };
+
+inline constexpr double kFineFull_m = 160;
+inline constexpr double kFineNone_m = 420;
 
 /// Spans hold sample_count(grid) floats. Where the strength is 0 everything is 0. With 0 octaves everything is 0 but
 /// the ridge map, which is the masked fade target.
 void erode(const ErosionControls& controls, const ColumnGrid& grid, const ErosionInput& input,
            const ErosionOutput& output);
 
-/// |change of height| stays below this times the largest strength of the input, in metres.
+/// |change of height|, and what fine gullies cut, stay below this times the largest strength of the input, in metres.
 double erosion_bound(const ErosionControls& controls);
 
 }  // namespace talus

@@ -29,6 +29,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class V>
 struct ErosionResult {
   V height, slope_x, slope_z, ridge;
+  V cut, cut_x, cut_z;  ///< by fine gullies
 };
 
 /// The frequency method at lanes i.. of a row.
@@ -46,7 +47,7 @@ HWY_INLINE ErosionResult<V> frequency_method(D d, const ErosionTerms& t, const P
 
   V gully_x = gx;
   V gully_z = gz;
-  ErosionResult<V> r{zero, zero, zero, fade};
+  ErosionResult<V> r{zero, zero, zero, fade, zero, zero, zero};
   V ridge_mask =
       ease_out(d, hn::Mul(hn::Sqrt(hn::Add(hn::Mul(gx, gx), hn::Mul(gz, gz))), hn::Set(d, t.ridge_onset_input)));
   for (std::size_t o = 0; o < static_cast<std::size_t>(t.octaves); ++o) {
@@ -64,14 +65,18 @@ HWY_INLINE ErosionResult<V> frequency_method(D d, const ErosionTerms& t, const P
 
     const V strength = hn::Mul(point_strength, hn::Set(d, t.octave[o].strength_m));
     // Flats (cosine 1) stay where they are; gullies are cut below them.
-    const V cut = hn::Add(hn::Mul(hn::Sub(cosine, one), weight), pull);
-    r.height = hn::Add(r.height, hn::Mul(strength, cut));
+    const V below = hn::Mul(hn::Sub(one, cosine), weight);
+    r.height = hn::Add(r.height, hn::Mul(strength, hn::Sub(pull, below)));
     const V side =
         hn::Mul(hn::Mul(hn::Mul(strength, weight), hn::Mul(stripes, sine)), hn::Set(d, t.octave[o].side_slope_per_m));
     const V side_x = hn::Mul(nz, side);
     const V side_z = hn::Neg(hn::Mul(nx, side));
     r.slope_x = hn::Add(r.slope_x, side_x);
     r.slope_z = hn::Add(r.slope_z, side_z);
+    const V fine = hn::Set(d, t.octave[o].fine);
+    r.cut = hn::Add(r.cut, hn::Mul(hn::Mul(strength, fine), below));
+    r.cut_x = hn::Sub(r.cut_x, hn::Mul(side_x, fine));
+    r.cut_z = hn::Sub(r.cut_z, hn::Mul(side_z, fine));
     const V branch = hn::Set(d, t.frequency_branch);
     gully_x = hn::Add(gully_x, hn::Mul(side_x, branch));
     gully_z = hn::Add(gully_z, hn::Mul(side_z, branch));

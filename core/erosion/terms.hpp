@@ -14,6 +14,7 @@ struct ErosionOctave {
   float strength_m;        ///< strength * scale * gain^o
   float side_slope_per_m;  ///< 2 pi * cell_scale * cells per metre: slope of a wave of 1 m at its steepest
   float rounding;          ///< rounding_octave^o
+  float fine;              ///< share of its gullies that counts as fine, 0..1
 };
 
 /// Controls as floats, and the octaves; one per call of erode.
@@ -34,6 +35,7 @@ struct ErosionRow {
   const float *in_slope_x, *in_slope_z, *in_fade, *in_strength;
   const float* in_frequency;  ///< null where no point has a share of the frequency method
   float *height, *slope_x, *slope_z, *ridge;
+  float *cut, *cut_x, *cut_z;  ///< null where nobody asks
 };
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "core/strata/hardness_profile.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #ifndef TALUS_HARDNESS_PROFILE_SLICES
 #define TALUS_HARDNESS_PROFILE_SLICES
@@ -63,10 +64,18 @@ namespace {
 constexpr float kBack = 0.25f;
 constexpr float kProud = 0.75f;
 
-/// Steps of 1/8 m in which layers are averaged; the triangle of +-0.5 m has 9 of them, with weights 0 1 2 3 4 3 2 1 0.
+/// Steps of 1/8 m in which layers are averaged; the triangle of +-3/4 m has 13 of them, with weights 0 1 2 .. 6 .. 2 1
+/// 0. With +-1/2 m the thin beds of a steep flank meet voxels in a waffle.
 constexpr int kStepsPerMetre = 8;
-constexpr int kTriangleSteps = 4;
+constexpr int kTriangleSteps = 6;
 constexpr int kStepsPerSlice = kStepsPerMetre / static_cast<int>(kProudSlicesPerMetre);
+
+/// A ceiling, in slices: how far it is looked for, the hard bed over it, the soft one under it; and how much they must
+/// differ.
+constexpr int kCeilingReach = 32;
+constexpr int kCeilingHard = 6;
+constexpr int kCeilingSoft = 5;
+constexpr float kCeilingStep = 0.35f;
 
 }  // namespace
 
@@ -92,6 +101,33 @@ void HardnessProfile::tabulate(const LayerSet& set) {
     }
     proud_.push_back(sum / static_cast<float>(kTriangleSteps * kTriangleSteps));
   }
+}
+
+std::optional<float> HardnessProfile::ceiling_near(float stack_m, float choice, float height_m) const {
+  constexpr float kLast = static_cast<float>(kProudSlices - 1 - kCeilingReach - kCeilingSoft);
+  const float slices = std::floor((stack_m - height_m) * kProudSlicesPerMetre);
+  if (!(slices >= static_cast<float>(kCeilingReach + kCeilingHard) && slices <= kLast)) return std::nullopt;
+  const int middle = static_cast<int>(slices);
+  const std::size_t sets = proud_.size() / static_cast<std::size_t>(kProudSlices) - 1;
+  const auto set = std::min(static_cast<std::size_t>(std::max(choice, 0.0f) + 0.5f), sets - 1);
+  const float* const table = &proud_[set * static_cast<std::size_t>(kProudSlices)];
+  const auto mean = [table](int from, int count) {
+    float sum = 0;
+    for (int n = from; n < from + count; ++n) sum += table[n];
+    return sum / static_cast<float>(count);
+  };
+  float most = kCeilingStep;
+  int found = 0;
+  bool any = false;
+  for (int at = middle - kCeilingReach; at <= middle + kCeilingReach; ++at) {
+    const float step = mean(at - kCeilingHard, kCeilingHard) - mean(at, kCeilingSoft);
+    if (!(step > most)) continue;
+    most = step;
+    found = at;
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  return stack_m - static_cast<float>(found) / kProudSlicesPerMetre;
 }
 
 void HardnessProfile::row(const float* stack_m, const float* choice, float height_m, std::size_t width,

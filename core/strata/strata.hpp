@@ -35,6 +35,7 @@ struct StrataRow {
   const float* stack_m;   ///< height of the stack's top
   const float* choice;    ///< 0 .. sets - 1, set and fraction
   const float* district;  ///< noise of about -0.6 .. 0.6: where ledges show at all
+  const float* fashion;   ///< 0 .. 1: which beds make the bolder ledges here
   std::size_t width;
 };
 
@@ -63,6 +64,8 @@ class Strata {
 
   /// Mean hardness within 45 m above and below each height: continuous and slow, fit to scale erosion.
   void hardness_row(const StrataRow& row, const float* height_m, float* hardness) const;
+  /// The same of single beds: within 16 m.
+  void bed_hardness_row(const StrataRow& row, const float* height_m, float* hardness) const;
 
   /// Moves eroded heights on to ledges: hard beds steeper, soft ones benches. `relief_x`, `relief_z` are slopes before
   /// erosion; `height_m`, `slope_x` and `slope_z` change in place. Heights of one column keep their order.
@@ -76,14 +79,17 @@ class Strata {
 
  private:
   int set_at(const RockPoint& point) const;
-  void tabulate(const LayerSet& set);
+  void tabulate(const LayerSet& set, std::uint64_t seed);
 
   StrataControls controls_;
   Facies facies_;
   Facies borders_;  ///< of layer sets
   std::vector<LayerSet> sets_;
-  std::vector<float> ledge_;     ///< kSlicesPerSet values per set: leaky integral of hardness over depth
-  std::vector<float> hardness_;  ///< the same: mean hardness around a depth
+  /// kSlicesPerSet values per set: leaky integrals of hardness over depth, with each formation's share of either
+  /// fashion.
+  std::vector<float> ledge_a_, ledge_b_;
+  std::vector<float> hardness_;      ///< the same: mean hardness around a depth
+  std::vector<float> bed_hardness_;  ///< the same, within a few beds
   DominantRock dominant_;
 };
 

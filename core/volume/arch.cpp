@@ -6,15 +6,20 @@
 namespace talus {
 namespace {
 
-/// Directions looked in: straight inland, and 17 and 34 degrees to either side.
-constexpr std::array<glm::vec2, 5> kTurns{
-    {{1.0f, 0.0f}, {0.95630f, 0.29237f}, {0.95630f, -0.29237f}, {0.82904f, 0.55919f}, {0.82904f, -0.55919f}}};
+/// Directions looked in: straight inland, and 17, 34 and 51 degrees to either side.
+constexpr std::array<glm::vec2, 7> kTurns{{{1.0f, 0.0f},
+                                           {0.95630f, 0.29237f},
+                                           {0.95630f, -0.29237f},
+                                           {0.82904f, 0.55919f},
+                                           {0.82904f, -0.55919f},
+                                           {0.62932f, 0.77715f},
+                                           {0.62932f, -0.77715f}}};
 constexpr float kLookStep_m = 3.0f;
 constexpr float kLookFrom_m = 4.0f;
 constexpr float kLengthMin_m = 7.0f;
 constexpr float kCrestMin_m = 10.0f;
 /// Water again: no higher than this above the seed.
-constexpr float kFarSide_m = 0.5f;
+constexpr float kFarSide_m = 1.0f;
 /// Rock above an arch's ceiling, in radii, and its legs' height and distance.
 constexpr float kClearance = 1.35f;
 constexpr float kLegHeight = 0.9f;
@@ -32,6 +37,14 @@ std::optional<ArchWay> find_arch(const CarveControls& controls, Relief& relief, 
                                  glm::vec2 inland) {
   const CarvePass& pass = controls.pass(CarveKind::kArches);
   const auto height = [&](glm::dvec2 at) { return relief.height_at(at.x, at.y); };
+  // Both legs must stand: an arch that only cuts a corner leaves none.
+  const auto stands = [&](const ArchWay& way) {
+    const glm::dvec2 middle = ahead(seed_m, way.along, 0.5f * way.length_m);
+    const glm::vec2 aside{-way.along.y, way.along.x};
+    const float leg_m = seed_y_m + kLegHeight * way.radius_m * pass.stretch;
+    const float off_m = way.radius_m + kLegDistance_m;
+    return height(ahead(middle, aside, off_m)) >= leg_m && height(ahead(middle, aside, -off_m)) >= leg_m;
+  };
   std::optional<ArchWay> shortest;
   const int looks = static_cast<int>((controls.arch_span_m - kLookFrom_m) / kLookStep_m);
   for (const glm::vec2& turn : kTurns) {
@@ -46,16 +59,10 @@ std::optional<ArchWay> find_arch(const CarveControls& controls, Relief& relief, 
       if (s < kLengthMin_m || crest_m < seed_y_m + kCrestMin_m) break;
       const float under_roof_m = (crest_m - pass.roof_m - seed_y_m) / (kClearance * pass.stretch);
       const float radius_m = std::min({pass.radius_high_m, under_roof_m, kWidth * s + kWidthMore_m});
-      if (radius_m >= 0.58f * pass.radius_low_m) shortest = ArchWay{along, s, radius_m};
+      const ArchWay way{along, s, radius_m};
+      if (radius_m >= 0.58f * pass.radius_low_m && stands(way)) shortest = way;
       break;
     }
-  }
-  if (!shortest) return std::nullopt;
-  const glm::dvec2 middle = ahead(seed_m, shortest->along, 0.5f * shortest->length_m);
-  const glm::vec2 aside{-shortest->along.y, shortest->along.x};
-  const float leg_m = seed_y_m + kLegHeight * shortest->radius_m * pass.stretch;
-  for (const float side : {1.0f, -1.0f}) {
-    if (height(ahead(middle, aside, side * (shortest->radius_m + kLegDistance_m))) < leg_m) return std::nullopt;
   }
   return shortest;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/vec2.hpp>
 
@@ -30,6 +31,12 @@ constexpr float kRadiusMin_m = 0.8f;
 constexpr int kMouthSpheres = 2;
 constexpr float kMouthShare = 1.6f;
 constexpr float kVerticalJitter = 0.4f;
+/// Alcoves open this far below the base of the hard bed that they hang from, in metres, and are held to it by this
+/// share of other spheres' jitter.
+constexpr float kAlcoveBelow_m = 3.0f;
+constexpr float kCeilingJitter = 0.1f;
+/// Their steps along the wall, over those of others into it.
+constexpr float kAlcoveStep = 1.6f;
 constexpr float kArchStepShare = 0.55f;
 constexpr float kArchFlare = 0.12f;
 constexpr float kArchBelow_m = 0.5f;
@@ -49,7 +56,8 @@ glm::vec2 unit(glm::vec2 v) {
 struct Seed {
   glm::dvec2 place_m;
   float y_m;
-  glm::vec2 inland;  ///< unit, against the wall's normal
+  glm::vec2 inland;                               ///< unit, against the wall's normal
+  std::optional<float> ceiling_m = std::nullopt;  ///< base of the hard bed that spheres reach up to
 };
 
 /// Grows what one pass carves, cell by cell.
@@ -73,17 +81,32 @@ class Grower {
   }
 
  private:
-  /// Moves a candidate along the slope to an elevation it may have; false where it leaves its cell or the slope is
-  /// gentle.
+  /// A candidate of a cell, moved to where it may be: to an elevation of its pass, and an alcove to the base of a hard
+  /// bed. False where it cannot.
   bool accept(std::int64_t cell_x, std::int64_t cell_z, Draw& draw, Seed& out) {
-    const double low_x = static_cast<double>(cell_x) * pass_.cell_m;
-    const double low_z = static_cast<double>(cell_z) * pass_.cell_m;
-    glm::dvec2 place{low_x + static_cast<double>(draw.unit()) * pass_.cell_m,
-                     low_z + static_cast<double>(draw.unit()) * pass_.cell_m};
+    const glm::dvec2 corner{static_cast<double>(cell_x) * pass_.cell_m, static_cast<double>(cell_z) * pass_.cell_m};
+    glm::dvec2 place{corner.x + static_cast<double>(draw.unit()) * pass_.cell_m,
+                     corner.y + static_cast<double>(draw.unit()) * pass_.cell_m};
     ReliefPoint here = relief_.at(place.x, place.y);
     const bool narrow = pass_.elevation_high_m - pass_.elevation_low_m <= kNarrowRange_m;
     const float drawn = draw.between(pass_.elevation_low_m, pass_.elevation_high_m);
     const float wanted = narrow ? drawn : std::clamp(here.height_m, pass_.elevation_low_m, pass_.elevation_high_m);
+    if (!project(corner, wanted, place, here)) return false;
+    std::optional<float> ceiling_m;
+    if (kind_ == CarveKind::kAlcoves) {
+      ceiling_m = relief_.ceiling_near(place.x, place.y, here.height_m);
+      if (!ceiling_m || !project(corner, *ceiling_m - kAlcoveBelow_m, place, here)) return false;
+    }
+    const ReliefPoint wide = relief_.wide_at(place.x, place.y);
+    const glm::vec2 near_up = unit({here.slope_x, here.slope_z});
+    const glm::vec2 wide_up = unit({wide.slope_x, wide.slope_z});
+    out = {place, here.height_m, unit({near_up.x + kInlandWide * wide_up.x, near_up.y + kInlandWide * wide_up.y}),
+           ceiling_m};
+    return true;
+  }
+
+  /// Moves a place along the slope to an elevation; false where it leaves the cell at `corner`, or the slope is gentle.
+  bool project(const glm::dvec2& corner, float wanted, glm::dvec2& place, ReliefPoint& here) {
     const float step_max = kProjectShare * static_cast<float>(pass_.cell_m);
     for (int n = 0; n < kProjectSteps && std::abs(here.height_m - wanted) > kElevationError_m; ++n) {
       const float slope2 = here.slope_x * here.slope_x + here.slope_z * here.slope_z;
@@ -92,18 +115,13 @@ class Grower {
       const float step = std::clamp((wanted - here.height_m) / slope, -step_max, step_max) / slope;
       place.x += static_cast<double>(here.slope_x * step);
       place.y += static_cast<double>(here.slope_z * step);
-      if (!(place.x >= low_x && place.x < low_x + pass_.cell_m && place.y >= low_z && place.y < low_z + pass_.cell_m))
+      if (!(place.x >= corner.x && place.x < corner.x + pass_.cell_m && place.y >= corner.y &&
+            place.y < corner.y + pass_.cell_m))
         return false;
       here = relief_.at(place.x, place.y);
     }
     const float slope2 = here.slope_x * here.slope_x + here.slope_z * here.slope_z;
-    if (std::abs(here.height_m - wanted) > kElevationError_m || slope2 < pass_.slope_min * pass_.slope_min)
-      return false;
-    const ReliefPoint wide = relief_.wide_at(place.x, place.y);
-    const glm::vec2 near_up = unit({here.slope_x, here.slope_z});
-    const glm::vec2 wide_up = unit({wide.slope_x, wide.slope_z});
-    out = {place, here.height_m, unit({near_up.x + kInlandWide * wide_up.x, near_up.y + kInlandWide * wide_up.y})};
-    return true;
+    return std::abs(here.height_m - wanted) <= kElevationError_m && slope2 >= pass_.slope_min * pass_.slope_min;
   }
 
   void grow(const Seed& seed, Draw& draw) {
@@ -111,6 +129,12 @@ class Grower {
     int made = 0;
     glm::dvec2 centre = seed.place_m;
     float y_m = seed.y_m;
+    // Alcoves are wider than deep: they follow their bed to both sides.
+    const glm::vec2 along{-seed.inland.y, seed.inland.x};
+    if (seed.ceiling_m) {
+      const float back = 0.5f * kAlcoveStep * static_cast<float>(steps - 1) * pass_.step_m;
+      centre -= glm::dvec2(along * back);
+    }
     for (int step = 0; step < steps; ++step) {
       const float share = steps > 1 ? static_cast<float>(step) / static_cast<float>(steps - 1) : 0.0f;
       const float taper = 1.0f + (pass_.end_radius - 1.0f) * share;
@@ -120,11 +144,14 @@ class Grower {
         const float jitter = pass_.jitter * radius;
         const glm::dvec2 place{centre.x + static_cast<double>(draw.between(-jitter, jitter)),
                                centre.y + static_cast<double>(draw.between(-jitter, jitter))};
-        const float height = y_m + kVerticalJitter * draw.between(-jitter, jitter);
+        const float shift = kVerticalJitter * draw.between(-jitter, jitter);
+        const float height =
+            seed.ceiling_m ? *seed.ceiling_m - radius * pass_.stretch + kCeilingJitter * shift : y_m + shift;
         roofed(seed, place, height, radius, made < kMouthSpheres);
       }
-      centre.x += static_cast<double>(seed.inland.x * pass_.step_m);
-      centre.y += static_cast<double>(seed.inland.y * pass_.step_m);
+      const glm::vec2 way = seed.ceiling_m ? along * kAlcoveStep : seed.inland;
+      centre.x += static_cast<double>(way.x * pass_.step_m);
+      centre.y += static_cast<double>(way.y * pass_.step_m);
       y_m -= pass_.fall * pass_.step_m;
     }
   }

@@ -3,7 +3,8 @@
 // Based on: A. Paris et al., "Terrain Amplification with Implicit 3D Features", 2019 (spheres along a path, subtracted
 // from a heightfield), and a description of coastal erosion by spheres that grow from seeds on steep shores. What
 // differs: seeds are found by hashing cells, so that no region is ever scanned as a whole; candidates are projected on
-// to the elevation they need; a roof rule keeps thin shells from forming; arches look for the far side first.
+// to the elevation they need; alcoves lie in soft beds under hard ones; a roof rule keeps thin shells from forming;
+// arches look for the far side first.
 #pragma once
 
 #include <cstddef>

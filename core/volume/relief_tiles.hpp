@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/volume/height_source.hpp"
@@ -53,6 +54,11 @@ class Relief {
   ReliefPoint wide_at(double x_m, double z_m);
   /// 0 where the land is too gentle for warp, 1 where it is steep, between wide nodes.
   float gate_at(double x_m, double z_m);
+
+  /// Base of a hard bed over a soft one near that height, if there is one.
+  std::optional<float> ceiling_near(double x_m, double z_m, float height_m) {
+    return source_.ceiling_near(x_m, z_m, height_m);
+  }
 
   /// Of fine tile (x, z), without evaluating it.
   TileOutlook outlook(std::int64_t x, std::int64_t z);

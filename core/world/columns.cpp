@@ -67,7 +67,7 @@ void cone_stage(const WorldFunction::Terms& t, const ColumnGrid& grid, Arrays ar
 }
 
 /// Arrays that live from stage to stage, and the most that one stage needs: the coast's.
-constexpr std::size_t kKeptArrays = 2 + 2 + 1 + 3 + kDistrictStageArrays;
+constexpr std::size_t kKeptArrays = 2 + 2 + 1 + 1 + 3 + kDistrictStageArrays;
 constexpr std::size_t kWorkspaceArrays = kKeptArrays + kCoastArrays;
 
 /// One call of WorldFunction::columns. Each stage reads what those before it left, and takes its own arrays from the
@@ -94,6 +94,7 @@ class ColumnStages {
     fade_ = free_.take();
     strength_ = free_.take();
     hardness_ = free_.take();
+    fashion_ = free_.take();
     district_ = sample(t_.district, grid, free_).v;
   }
 
@@ -111,7 +112,10 @@ class ColumnStages {
     const NoiseArrays tilt = sample(t_.tilt, grid_, arrays);
     const NoiseArrays set_choice = sample(t_.set_choice, grid_, arrays);
     for (std::size_t at = 0; at < count_; at += stride_) {
-      strata_place_row(t_, {fold.v + at, tilt.v + at, set_choice.v + at, &out_.stack_m[at], &out_.choice[at]}, width_);
+      strata_place_row(t_,
+                       {fold.v + at, fold.x + at, tilt.v + at, set_choice.v + at, &out_.hilliness[at],
+                        &out_.stack_m[at], &out_.choice[at], fashion_ + at},
+                       width_);
     }
     lay_tables(t_, districts_, ground(), out_);
     for (std::size_t at = 0; at < count_; at += stride_) {
@@ -130,10 +134,11 @@ class ColumnStages {
     if (t_.frequency_share > 0 || districts_.weights.has(District::kGlacial)) shares = arrays.span(arrays.take());
     share_erosion(t_.frequency_share, districts_, arrays.span(strength_), shares);
     const GroundArrays changes{arrays.span(change), arrays.span(change_x), arrays.span(change_z)};
+    const GroundArrays cut{arrays.span(arrays.take()), arrays.span(arrays.take()), arrays.span(arrays.take())};
     erode(t_.erosion, grid_,
           {arrays.span(relief_x_), arrays.span(relief_z_), arrays.span(fade_), arrays.span(strength_), shares},
-          {changes.height_m, changes.slope_x, changes.slope_z, out_.ridge});
-    add_rills(t_, districts_, ground(), changes, arrays, out_);
+          {changes.height_m, changes.slope_x, changes.slope_z, out_.ridge, cut.height_m, cut.slope_x, cut.slope_z});
+    add_rills(t_, districts_, ground(), {changes, cut}, arrays, out_);
     show_ledges(districts_, arrays.span(district_));
     for (std::size_t at = 0; at < count_; at += stride_) {
       float* height = &out_.height_m[at];
@@ -142,6 +147,10 @@ class ColumnStages {
       std::copy_n(relief_x_ + at, stride_, slope_x);
       std::copy_n(relief_z_ + at, stride_, slope_z);
       add_change_row({change + at, change_x + at, change_z + at, height, slope_x, slope_z}, width_);
+      t_.strata->bed_hardness_row(strata_row(at), height, hardness_ + at);
+      withstand_row(t_.resistance,
+                    {hardness_ + at, &cut.height_m[at], &cut.slope_x[at], &cut.slope_z[at], height, slope_x, slope_z},
+                    width_);
       t_.strata->ledge_row(strata_row(at), relief_x_ + at, relief_z_ + at, height, slope_x, slope_z);
     }
     if (districts_.weights.has(District::kDunes)) {
@@ -180,7 +189,9 @@ class ColumnStages {
 
  private:
   GroundArrays ground() { return {out_.height_m, free_.span(relief_x_), free_.span(relief_z_)}; }
-  StrataRow strata_row(std::size_t at) const { return {&out_.stack_m[at], &out_.choice[at], district_ + at, width_}; }
+  StrataRow strata_row(std::size_t at) const {
+    return {&out_.stack_m[at], &out_.choice[at], district_ + at, fashion_ + at, width_};
+  }
 
   const WorldFunction::Terms& t_;
   const ColumnGrid& grid_;
@@ -189,7 +200,7 @@ class ColumnStages {
   Arrays free_;  ///< what no stage keeps
   DistrictStages districts_;
   float *relief_x_ = nullptr, *relief_z_ = nullptr, *fade_ = nullptr, *strength_ = nullptr, *hardness_ = nullptr;
-  float* district_ = nullptr;  ///< noise of the ledges
+  float *district_ = nullptr, *fashion_ = nullptr;  ///< of the ledges: how much they show, and which
 };
 
 }  // namespace

@@ -95,10 +95,10 @@ void share_erosion(float frequency_everywhere, DistrictStages& stages, std::span
 }
 
 void add_rills(const WorldFunction::Terms& t, const DistrictStages& stages, const GroundArrays& relief,
-               const GroundArrays& eroded, const Arrays& arrays, ColumnBlock& out) {
+               const ErodedArrays& eroded, const Arrays& arrays, ColumnBlock& out) {
   if (!stages.any_rills) return;
   const std::size_t count = sample_count(out.grid);
-  const auto workspace = arrays.borrow(6);
+  const auto workspace = arrays.borrow(9);
   const auto array = [&](std::size_t n) { return workspace.subspan(n * count, count); };
   const auto bad = weight(stages, District::kBadlands);
   for (std::size_t i = 0; i < count; ++i) {
@@ -108,11 +108,14 @@ void add_rills(const WorldFunction::Terms& t, const DistrictStages& stages, cons
     array(5)[i] = bad[i] > 0 ? z + (stages.rills.z[i] - z) * bad[i] : z;
   }
   erode(t.rills, out.grid, {array(4), array(5), stages.rills.v, stages.rill_strength},
-        {array(0), array(1), array(2), array(3)});
+        {array(0), array(1), array(2), array(3), array(6), array(7), array(8)});
   for (std::size_t i = 0; i < count; ++i) {
-    eroded.height_m[i] += array(0)[i];
-    eroded.slope_x[i] += array(1)[i];
-    eroded.slope_z[i] += array(2)[i];
+    eroded.change.height_m[i] += array(0)[i];
+    eroded.change.slope_x[i] += array(1)[i];
+    eroded.change.slope_z[i] += array(2)[i];
+    eroded.cut.height_m[i] += array(6)[i];
+    eroded.cut.slope_x[i] += array(7)[i];
+    eroded.cut.slope_z[i] += array(8)[i];
     const float w = std::min(stages.rill_strength[i], 1.0f);
     if (w > 0) out.ridge[i] += (array(3)[i] - out.ridge[i]) * w;
   }

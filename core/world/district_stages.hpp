@@ -42,9 +42,14 @@ void lay_tables(const WorldFunction::Terms& terms, const DistrictStages& stages,
 void share_erosion(float frequency_everywhere, DistrictStages& stages, std::span<float> strength,
                    std::span<float> frequency_share);
 
-/// After erosion: rills on top of `eroded`, what the large gullies change, and of the ridge map.
+/// What erosion changes: the ground, and how much of that fine gullies have cut.
+struct ErodedArrays {
+  GroundArrays change, cut;
+};
+
+/// After erosion: rills on top of `eroded`, and of the ridge map.
 void add_rills(const WorldFunction::Terms& terms, const DistrictStages& stages, const GroundArrays& relief,
-               const GroundArrays& eroded, const Arrays& arrays, ColumnBlock& out);
+               const ErodedArrays& eroded, const Arrays& arrays, ColumnBlock& out);
 
 /// Before ledges: where districts show them whatever `shown`, the noise of ledges, says.
 void show_ledges(const DistrictStages& stages, std::span<float> shown);

@@ -6,6 +6,17 @@ namespace talus {
 
 /// Hardness that leaves erosion as strong as the manifest says.
 inline constexpr float kMeanHardness = 0.55f;
+/// Resistance of 1 in large gullies, and in fine ones. Large ones are as deep as formations are thick: were they to
+/// follow the rock at once, valley floors would climb and fall.
+inline constexpr float kResistWide = 0.57f;
+inline constexpr float kResistFine = 2.2f;
+/// The shore is where erosion left it, whatever the rock: beds set in between these heights, in metres.
+inline constexpr float kResistLow_m = 5.0f;
+inline constexpr float kResistHigh_m = 70.0f;
+/// Folds of ranges over those of plains.
+inline constexpr float kRangeFolds = 4.0f;
+/// Slope of the folds' noise from which one fashion of ledges rules alone: its standard deviation and a little more.
+inline constexpr float kFashionSlope = 8e-4f;
 
 }  // namespace talus
 #endif  // TALUS_RELIEF_CONSTANTS
@@ -70,10 +81,14 @@ void strata_place_row_target(const WorldFunction::Terms& t, const StrataPlace& r
   const auto last = hn::Set(d, static_cast<float>(t.strata->sets() - 1));
   for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     const auto scaled = [&](const float* noise, float by) { return hn::Mul(hn::LoadU(d, noise + i), hn::Set(d, by)); };
-    const auto bent = hn::Add(scaled(r.fold, t.fold_m), scaled(r.tilt, t.tilt_m));
+    const auto hilly = saturate(hn::LoadU(d, r.hilliness + i));
+    const auto folds = hn::Add(hn::Set(d, 1.0f), hn::Mul(hn::Mul(hilly, hilly), hn::Set(d, kRangeFolds - 1.0f)));
+    const auto bent = hn::Add(hn::Mul(scaled(r.fold, t.fold_m), folds), scaled(r.tilt, t.tilt_m));
     hn::StoreU(hn::Add(bent, hn::Set(d, kStackTop)), d, r.stack + i);
     const auto share = saturate(hn::Add(scaled(r.set_choice, 0.9f), hn::Set(d, 0.5f)));
     hn::StoreU(hn::Mul(share, last), d, r.choice + i);
+    const auto fashion = saturate(hn::Add(scaled(r.fold_x, 0.5f / kFashionSlope), hn::Set(d, 0.5f)));
+    hn::StoreU(fashion, d, r.fashion + i);
   }
 }
 
@@ -81,8 +96,27 @@ void resist_row_target(float resistance, const float* hardness, float* strength,
   const hn::ScalableTag<float> d;
   for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
     const auto softer = hn::Sub(hn::Set(d, kMeanHardness), hn::LoadU(d, hardness + i));
-    const auto factor = hn::Add(hn::Set(d, 1.0f), hn::Mul(softer, hn::Set(d, resistance)));
+    const auto factor = hn::Add(hn::Set(d, 1.0f), hn::Mul(softer, hn::Set(d, kResistWide * resistance)));
     hn::StoreU(hn::Mul(hn::LoadU(d, strength + i), factor), d, strength + i);
+  }
+}
+
+void withstand_row_target(float resistance, const WithstandRow& r, std::size_t width) {
+  const hn::ScalableTag<float> d;
+  using V = hn::Vec<decltype(d)>;
+  const V one = hn::Set(d, 1.0f);
+  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
+    const V height = hn::LoadU(d, r.height + i);
+    const V harder = hn::Sub(hn::LoadU(d, r.hardness + i), hn::Set(d, kMeanHardness));
+    const V wanted = hn::Mul(harder, hn::Set(d, kResistFine * resistance));
+    const V above = smoothstep(kResistLow_m, kResistHigh_m, Jet<V>{height, hn::Zero(d), hn::Zero(d)}).v;
+    const V kept = hn::Mul(hn::Min(hn::Max(wanted, hn::Neg(one)), one), above);
+    const auto add = [&](const float* cut, float* to) {
+      hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::Mul(kept, hn::LoadU(d, cut + i))), d, to + i);
+    };
+    add(r.cut, r.height);
+    add(r.cut_x, r.slope_x);
+    add(r.cut_z, r.slope_z);
   }
 }
 
@@ -119,6 +153,7 @@ namespace talus {
 HWY_EXPORT(relief_row_target);
 HWY_EXPORT(strata_place_row_target);
 HWY_EXPORT(resist_row_target);
+HWY_EXPORT(withstand_row_target);
 HWY_EXPORT(add_change_row_target);
 HWY_EXPORT(surface_row_target);
 
@@ -132,6 +167,10 @@ void strata_place_row(const WorldFunction::Terms& terms, const StrataPlace& row,
 
 void resist_row(float resistance, const float* hardness, float* strength, std::size_t width) {
   HWY_DYNAMIC_DISPATCH(resist_row_target)(resistance, hardness, strength, width);
+}
+
+void withstand_row(float resistance, const WithstandRow& row, std::size_t width) {
+  HWY_DYNAMIC_DISPATCH(withstand_row_target)(resistance, row, width);
 }
 
 void add_change_row(const ChangeRow& row, std::size_t width) {

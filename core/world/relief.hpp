@@ -34,13 +34,23 @@ void relief_row(const ReliefTerms& terms, const ReliefRow& row, std::size_t widt
 
 /// Where the rock layers lie: the height of their stack's top and which set of them rules.
 struct StrataPlace {
-  const float *fold, *tilt, *set_choice;  ///< noises
-  float *stack, *choice;                  ///< out
+  const float *fold, *fold_x, *tilt, *set_choice;  ///< noises, and a slope
+  const float* hilliness;
+  float *stack, *choice, *fashion;  ///< out
 };
 void strata_place_row(const WorldFunction::Terms& terms, const StrataPlace& row, std::size_t width);
 
-/// strength *= 1 + (mean hardness - hardness) * resistance, so that hard rock is worn less.
+/// strength *= 1 + (mean hardness - hardness) * 0.57 * resistance, so that hard rock is worn less as a whole.
 void resist_row(float resistance, const float* hardness, float* strength, std::size_t width);
+
+/// What fine gullies cut out of beds that withstand them is put back, and what they spare in soft ones is cut, up to as
+/// much again: height and slope += kept * cut, where kept = 2.2 * resistance * (hardness - mean hardness), within +-1.
+struct WithstandRow {
+  const float* hardness;             ///< of the beds at the eroded height
+  const float *cut, *cut_x, *cut_z;  ///< by fine gullies
+  float *height, *slope_x, *slope_z;
+};
+void withstand_row(float resistance, const WithstandRow& row, std::size_t width);
 
 /// height and slope += change, in place.
 struct ChangeRow {

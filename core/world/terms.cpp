@@ -192,7 +192,7 @@ WorldFunction::Terms terms_of(Manifest manifest) {
   t.warp = warp_of(manifest);
   t.carve = carve_of(manifest);
   for (const std::byte b : canonical_bytes(manifest)) t.identity = mix64(t.identity, static_cast<std::uint64_t>(b));
-  t.fold = {m.number("strata.fold_m"), 3, 2.2, 0.4, m.seed(10)};
+  t.fold = {m.number("strata.fold_m"), 4, 2.2, 0.5, m.seed(10)};
   t.fold_m = m.real("strata.deformation_m");
   t.tilt = {m.number("strata.tilt_wavelength_m"), 1, 2.0, 0.5, m.seed(11)};
   t.tilt_m = m.real("strata.tilt_m");

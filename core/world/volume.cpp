@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "core/base/check.hpp"
 #include "core/volume/warp.hpp"
@@ -17,6 +20,11 @@ class WorldHeights final : public HeightSource {
   std::span<const float> heights(const ColumnGrid& grid) override {
     world_.columns(grid, block_);
     return block_.height_m;
+  }
+  std::optional<float> ceiling_near(double x_m, double z_m, float height_m) override {
+    const auto voxel = [&](double at_m) { return static_cast<std::int64_t>(std::floor(at_m / world_.voxel_m())); };
+    world_.columns({voxel(x_m), voxel(z_m), 1, 1, 1, world_.voxel_m()}, block_);
+    return world_.terms().profile->ceiling_near(block_.stack_m[0], block_.choice[0], height_m);
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,10 @@ class CliffCoast final : public HeightSource {
       }
     }
     return memory_;
+  }
+  /// A hard bed over a soft one every 14 m, the lowest at 9 m.
+  std::optional<float> ceiling_near(double /*x_m*/, double /*z_m*/, float height_m) override {
+    return 9.0f + 14.0f * std::floor((height_m - 2.0f) / 14.0f);
   }
 
   /// 1 / sqrt(1 + slope^2) at a column of `grid`.

@@ -18,10 +18,11 @@ namespace {
 struct Case {
   ColumnGrid grid;
   std::vector<float> slope_x, slope_z, fade, strength, frequency;
-  std::vector<float> height, out_x, out_z, ridge;
+  std::vector<float> height, out_x, out_z, ridge, cut, cut_x, cut_z;
 
   explicit Case(const ColumnGrid& at) : grid(at) {
-    for (auto* a : {&slope_x, &slope_z, &fade, &strength, &height, &out_x, &out_z, &ridge}) a->resize(sample_count(at));
+    for (auto* a : {&slope_x, &slope_z, &fade, &strength, &height, &out_x, &out_z, &ridge, &cut, &cut_x, &cut_z})
+      a->resize(sample_count(at));
     for (int k = 0; k < at.depth; ++k) {
       for (int i = 0; i < at.width; ++i) {
         const double x = static_cast<double>(at.x_voxel + i * at.step_voxel) * at.voxel_m;
@@ -38,7 +39,8 @@ struct Case {
     return static_cast<std::size_t>(k) * row_stride(grid) + static_cast<std::size_t>(i);
   }
   void run(const ErosionControls& controls) {
-    erode(controls, grid, {slope_x, slope_z, fade, strength, frequency}, {height, out_x, out_z, ridge});
+    erode(controls, grid, {slope_x, slope_z, fade, strength, frequency},
+          {height, out_x, out_z, ridge, cut, cut_x, cut_z});
   }
   void set_frequency(float share) { frequency.assign(sample_count(grid), share); }
 };
@@ -233,12 +235,44 @@ TEST(ErosionFilter, StaysWithinItsBoundAndItsRidgeMapWithinOne) {
   }
 }
 
+TEST(ErosionFilter, TellsHowFarFineGulliesCut) {
+  ErosionControls controls;
+  // Nothing but gullies, all of them fine: what is cut is all there is.
+  controls.scale_m = kFineFull_m;
+  controls.frequency_pull = 0;
+  Case c({0, 0, 3, 120, 120, 1});
+  c.set_frequency(1);
+  c.run(controls);
+  float deepest = 0;
+  for (int k = 0; k < 120; ++k) {
+    for (int i = 0; i < 120; ++i) {
+      const std::size_t p = c.index(i, k);
+      ASSERT_NEAR(c.cut[p], -c.height[p], 1e-3);
+      ASSERT_NEAR(c.cut_x[p], -c.out_x[p], 1e-4);
+      ASSERT_NEAR(c.cut_z[p], -c.out_z[p], 1e-4);
+      deepest = std::max(deepest, c.cut[p]);
+    }
+  }
+  EXPECT_GT(deepest, 5.0f);
+
+  // The fade method cuts below crests alone, so never above, and wide gullies are not fine.
+  controls = ErosionControls{};
+  c.set_frequency(0);
+  c.run(controls);
+  EXPECT_GE(std::ranges::min(c.cut), 0.0f);
+  EXPECT_GT(std::ranges::max(c.cut), 5.0f);
+  EXPECT_LE(static_cast<double>(std::ranges::max(c.cut)), erosion_bound(controls));
+  controls.octaves = 2;
+  c.run(controls);
+  EXPECT_EQ(std::ranges::max(c.cut), 0.0f) << "gullies of 500 m are not fine";
+}
+
 TEST(ErosionFilter, LeavesNothingBehindWithoutStrength) {
   Case c({0, 0, 5, 32, 32, 1});
   std::ranges::fill(c.strength, 0.0f);
   c.run(ErosionControls{});
   for (int k = 0; k < 32; ++k) {
-    for (int i = 0; i < 32; ++i) ASSERT_EQ(c.height[c.index(i, k)], 0.0f);
+    for (int i = 0; i < 32; ++i) ASSERT_EQ(c.height[c.index(i, k)] + c.cut[c.index(i, k)], 0.0f);
   }
 }
 
@@ -255,6 +289,8 @@ TEST(ErosionFilter, GivesTheSameBitsOnEveryTarget) {
       EXPECT_EQ(std::memcmp(&c.height[row], &best.height[row], 35 * sizeof(float)), 0) << target;
       EXPECT_EQ(std::memcmp(&c.ridge[row], &best.ridge[row], 35 * sizeof(float)), 0) << target;
       EXPECT_EQ(std::memcmp(&c.out_x[row], &best.out_x[row], 35 * sizeof(float)), 0) << target;
+      EXPECT_EQ(std::memcmp(&c.cut[row], &best.cut[row], 35 * sizeof(float)), 0) << target;
+      EXPECT_EQ(std::memcmp(&c.cut_x[row], &best.cut_x[row], 35 * sizeof(float)), 0) << target;
     }
   });
   EXPECT_GE(targets, 2) << "nothing was compared";

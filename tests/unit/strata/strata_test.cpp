@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "core/strata/hardness_profile.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/simd_targets.hpp"
 
@@ -18,20 +19,21 @@ constexpr std::size_t kWidth = 96;
 
 /// One row of columns of one stack, at heights that rise along it.
 struct Row {
-  std::vector<float> stack, choice, district, relief_x, relief_z, height, slope_x, slope_z, hardness;
+  std::vector<float> stack, choice, district, fashion, relief_x, relief_z, height, slope_x, slope_z, hardness;
   Row(float stack_m, float set_choice, float low_m, float step_m) {
-    for (auto* a : {&stack, &choice, &district, &relief_x, &relief_z, &height, &slope_x, &slope_z, &hardness})
+    for (auto* a : {&stack, &choice, &district, &fashion, &relief_x, &relief_z, &height, &slope_x, &slope_z, &hardness})
       a->resize(kWidth);
     for (std::size_t i = 0; i < kWidth; ++i) {
       stack[i] = stack_m;
       choice[i] = set_choice;
       district[i] = 0.6f;
+      fashion[i] = 0.5f;
       relief_x[i] = 0.9f;
       height[i] = low_m + step_m * static_cast<float>(i);
       slope_x[i] = 1.0f;
     }
   }
-  StrataRow place() const { return {stack.data(), choice.data(), district.data(), kWidth}; }
+  StrataRow place() const { return {stack.data(), choice.data(), district.data(), fashion.data(), kWidth}; }
   void ledge(const Strata& strata) {
     strata.ledge_row(place(), relief_x.data(), relief_z.data(), height.data(), slope_x.data(), slope_z.data());
   }
@@ -46,16 +48,19 @@ Strata strata_of(float ledge) {
 
 TEST(Strata, MeansHardnessOverTheRockAroundADepth) {
   const Strata strata = strata_of(1.6f);
-  Row row(3600, 3.0f, 100, 21.3f);
-  strata.hardness_row(row.place(), row.height.data(), row.hardness.data());
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    const float depth = row.stack[i] - row.height[i];
-    double sum = 0;
-    int samples = 0;
-    for (float d = depth - 45; d < depth + 45; d += 0.05f, ++samples) {
-      sum += static_cast<double>(strata.set(3).layer(strata.set(3).index_at(d)).hardness);
+  for (const float reach_m : {45.0f, 16.0f}) {
+    Row row(3600, 3.0f, 100, 21.3f);
+    const auto mean = reach_m > 16.0f ? &Strata::hardness_row : &Strata::bed_hardness_row;
+    (strata.*mean)(row.place(), row.height.data(), row.hardness.data());
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const float depth = row.stack[i] - row.height[i];
+      double sum = 0;
+      int samples = 0;
+      for (float d = depth - reach_m; d < depth + reach_m; d += 0.05f, ++samples) {
+        sum += static_cast<double>(strata.set(3).layer(strata.set(3).index_at(d)).hardness);
+      }
+      EXPECT_NEAR(static_cast<double>(row.hardness[i]), sum / samples, 0.03) << depth;
     }
-    EXPECT_NEAR(static_cast<double>(row.hardness[i]), sum / samples, 0.02) << depth;
   }
 }
 
@@ -63,6 +68,7 @@ TEST(Strata, KeepsHeightsOfAColumnInOrderAtItsStrongest) {
   const Strata strata = strata_of(1.8f);
   for (const float choice : {0.0f, 2.5f, 7.43f, 11.0f}) {
     Row row(3600, choice, 80, 0.7f);
+    std::ranges::fill(row.fashion, choice / 11.0f);
     const std::vector<float> before = row.height;
     row.ledge(strata);
     bool moved = false;
@@ -92,8 +98,60 @@ TEST(Strata, MakesHardBedsSteeperThanSoftOnes) {
   }
   ASSERT_GT(hards, 100);
   ASSERT_GT(softs, 100);
-  EXPECT_GT(hard / hards, 1.2);
+  EXPECT_GT(hard / hards, 1.15);
   EXPECT_LT(soft / softs, 0.9);
+}
+
+TEST(Strata, LetsFormationsTakeTurnsInMakingLedges) {
+  const Strata strata = strata_of(1.6f);
+  int first = 0;
+  int second = 0;
+  for (int part = 0; part < 40; ++part) {
+    const auto ledged = [&](float fashion) {
+      Row row(3600, 5.0f, 80 + 47 * static_cast<float>(part), 0.5f);
+      std::ranges::fill(row.fashion, fashion);
+      row.ledge(strata);
+      return row.slope_x;
+    };
+    const std::vector<float> a = ledged(0);
+    const std::vector<float> b = ledged(1);
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const float bold_a = std::abs(a[i] - 1.0f);
+      const float bold_b = std::abs(b[i] - 1.0f);
+      first += bold_a > 2 * bold_b + 0.1f ? 1 : 0;
+      second += bold_b > 2 * bold_a + 0.1f ? 1 : 0;
+      ASSERT_GT(std::min(a[i], b[i]), 0.0f);
+    }
+  }
+  EXPECT_GT(first, 200) << "of 3840: ledges of the first fashion alone";
+  EXPECT_GT(second, 200) << "of 3840: ledges of the second alone";
+}
+
+TEST(Strata, FindsTheBasesOfHardBedsOverSoftOnes) {
+  const Strata strata = strata_of(1.6f);
+  const HardnessProfile profile(strata);
+  test::Random random(31);
+  int found = 0;
+  for (int n = 0; n < 2'000; ++n) {
+    const int set = static_cast<int>(random.whole(0, strata.sets() - 1));
+    const auto height_m = static_cast<float>(random.real(0, 900));
+    const auto ceiling_m = profile.ceiling_near(3'600, static_cast<float>(set), height_m);
+    if (!ceiling_m) continue;
+    ++found;
+    ASSERT_LE(std::abs(*ceiling_m - height_m), 16.5f);
+    const auto hardness = [&](float from_m, float to_m) {
+      double sum = 0;
+      int samples = 0;
+      for (float y = from_m; y < to_m; y += 0.1f, ++samples)
+        sum += static_cast<double>(strata.set(set).layer(strata.set(set).index_at(3'600 - y)).hardness);
+      return sum / samples;
+    };
+    ASSERT_GT(hardness(*ceiling_m, *ceiling_m + 3), hardness(*ceiling_m - 2.5f, *ceiling_m) + 0.1);
+  }
+  EXPECT_GT(found, 400) << "of 2000";
+  EXPECT_LT(found, 1'900) << "of 2000: rock of one kind has none";
+  EXPECT_FALSE(profile.ceiling_near(3'600, 0, 3'599)) << "above the stack";
+  EXPECT_FALSE(profile.ceiling_near(3'600, 0, -1'520)) << "below it";
 }
 
 TEST(Strata, KeepsTheRockOfALayerInPatches) {

@@ -97,6 +97,31 @@ TEST(Carving, WithoutAPassHasNoneOfItsSpheres) {
   }
 }
 
+TEST(Carving, HangsAlcovesFromTheBaseOfHardBeds) {
+  CliffCoast coast(3);
+  const MadeUpVolume volume(coast);
+  MadeUpVolume::Memory memory;
+  Relief relief(coast, memory.relief);
+  int whole = 0;
+  for (std::int64_t tile = -24; tile < 24; ++tile) {
+    std::vector<CarveSphere> spheres;
+    grow_tile(volume.carve, relief, tile, -1, spheres);
+    for (const CarveSphere& s : spheres) {
+      if (s.kind != CarveKind::kAlcoves) continue;
+      const float top_m = s.y_m + s.radius_m / s.inverse_stretch;
+      const float under_m = *coast.ceiling_near(0, 0, top_m - 0.5f) - top_m;
+      EXPECT_GT(under_m, -0.5f) << "it breaks through the hard bed at " << top_m;
+      // Where the roof rule left it its height it reaches the bed.
+      const bool is_whole = std::abs(1.0f / s.inverse_stretch - volume.carve.pass(s.kind).stretch) < 0.01f;
+      if (is_whole) {
+        EXPECT_LT(under_m, 0.5f) << top_m;
+      }
+      whole += is_whole ? 1 : 0;
+    }
+  }
+  EXPECT_GT(whole, 20);
+}
+
 TEST(Carving, LeavesARoofOverEveryCave) {
   CliffCoast coast(3);
   const MadeUpVolume volume(coast);
@@ -109,9 +134,13 @@ TEST(Carving, LeavesARoofOverEveryCave) {
     for (const CarveSphere& s : spheres) {
       if (s.kind == CarveKind::kArches) continue;
       const float top_m = s.y_m + s.radius_m / s.inverse_stretch;
-      const float highest = std::max({relief.height_at(s.x_m, s.z_m), relief.height_at(s.x_m, s.z_m + 6),
-                                      relief.height_at(s.x_m + 6, s.z_m), relief.height_at(s.x_m - 6, s.z_m),
-                                      relief.height_at(s.x_m, s.z_m - 6)});
+      // A mouth's roof is looked for 1.6 radii further in.
+      const auto reach_m = static_cast<double>(1.6f * s.radius_m);
+      float highest = relief.height_at(s.x_m, s.z_m);
+      for (const double x : {-1.0, 0.0, 1.0}) {
+        for (const double z : {-1.0, 0.0, 1.0})
+          highest = std::max(highest, relief.height_at(s.x_m + reach_m * x, s.z_m + reach_m * z));
+      }
       EXPECT_LT(top_m, highest) << "nothing is above it within a mouth's reach";
       ++looked_at;
     }

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <thread>
 
 #include "core/world/density.hpp"
+#include "core/world/terms.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/simd_targets.hpp"
 
@@ -103,6 +106,55 @@ TEST(WorldFunction, HasTheSlopesOfItsReliefFromPlatesToHills) {
     steep += std::hypot(x, z) > 0.1 ? 1 : 0;
   }
   EXPECT_GT(steep, 20) << "nothing had a slope";
+}
+
+TEST(WorldFunction, LetsHardBedsStandProudOfSoftOnesOnGulliedFlanks) {
+  const auto heights = [](double resistance, ColumnBlock& out) {
+    Manifest manifest;
+    manifest.values[parameter_index("strata.resistance")] = resistance;
+    const WorldFunction world(manifest);
+    for (std::int64_t z = -60'000; z < -54'000; z += 2'000) {
+      ColumnBlock block;
+      world.columns({77'000, z, 16, 64, 64, 1.0}, block);
+      for (int k = 0; k < 64; ++k) {
+        for (int i = 0; i < 64; ++i) {
+          out.height_m.push_back(block.height_m[index(block, i, k)]);
+          out.stack_m.push_back(block.stack_m[index(block, i, k)]);
+          out.choice.push_back(block.choice[index(block, i, k)]);
+        }
+      }
+    }
+  };
+  ColumnBlock without;
+  ColumnBlock with;
+  heights(0, without);
+  heights(1, with);
+  const WorldFunction world{Manifest()};
+  const Strata& strata = *world.terms().strata;
+  double hard_m = 0;
+  double soft_m = 0;
+  int hards = 0;
+  int softs = 0;
+  for (std::size_t n = 0; n < with.height_m.size(); ++n) {
+    std::array<float, 16> height{with.height_m[n]};
+    std::array<float, 16> out{};
+    std::array<float, 16> stack{with.stack_m[n]};
+    std::array<float, 16> choice{with.choice[n]};
+    strata.bed_hardness_row({stack.data(), choice.data(), nullptr, nullptr, 1}, height.data(), out.data());
+    const float hardness = out[0];
+    const double moved = static_cast<double>(with.height_m[n] - without.height_m[n]);
+    if (hardness > 0.7f) {
+      hard_m += moved;
+      ++hards;
+    } else if (hardness < 0.4f) {
+      soft_m += moved;
+      ++softs;
+    }
+  }
+  ASSERT_GT(hards, 200);
+  ASSERT_GT(softs, 200);
+  std::printf("hard beds are moved by %.1f m, soft ones by %.1f m\n", hard_m / hards, soft_m / softs);
+  EXPECT_GT(hard_m / hards, soft_m / softs + 3);
 }
 
 TEST(WorldFunction, HasNoStepsAndStaysWithinItsHeights) {
