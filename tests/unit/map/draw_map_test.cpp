@@ -135,10 +135,10 @@ TEST(Map, LightensSlopesThatFaceTheNorthWestLamp) {
 }
 
 TEST(Map, ShowsSomethingOnEveryLayerAndKnowsThemByName) {
-  constexpr int kEdge = test::kIsSanitized ? 48 : 128;
+  constexpr int kEdge = test::kIsSanitized ? 64 : 128;
   for (std::size_t layer = 0; layer < kMapLayerNames.size(); ++layer) {
     ASSERT_EQ(map_layer(kMapLayerNames[layer]), static_cast<MapLayer>(layer));
-    const MapView view{-4096, -4096, 64, 2, kEdge, kEdge};
+    const MapView view{-4096, -4096, 8192 / kEdge, 2, kEdge, kEdge};
     const auto rgb = drawn(view, {static_cast<MapLayer>(layer), 0});
     std::set<std::array<std::uint8_t, 3>> colours;
     for (int p = 0; p < kEdge * kEdge; ++p) colours.insert(pixel(rgb, view, p, 0));
