@@ -2,11 +2,11 @@
 // this size cannot carry: strata, stones, tufts, crumbling borders between covers.
 in vec3 vRelative;
 in vec3 vPlace;
-in vec3 vNormal;
-in float vRidge;
-in vec4 vCoverA;
-in vec3 vCoverB;
-in vec3 vRock;
+centroid in vec3 vNormal;
+centroid in float vRidge;
+centroid in vec4 vCoverA;
+centroid in vec3 vCoverB;
+centroid in vec3 vRock;
 out vec4 colour;
 uniform sampler2D uNoise;
 uniform sampler2D uStrataThick;

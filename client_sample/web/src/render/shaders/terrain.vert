@@ -11,11 +11,13 @@ uniform vec3 uCameraPlace;  // xz: camera modulo the texture period; y: height a
 uniform vec3 uPalette[32];  // linear
 out vec3 vRelative;
 out vec3 vPlace;
-out vec3 vNormal;
-out float vRidge;
-out vec4 vCoverA;  // rock, scree, soil, grass
-out vec3 vCoverB;  // sand, snow, stream bed
-out vec3 vRock;    // the layer's colour
+// Where a triangle covers samples of a pixel but not its middle, these are taken inside it: continued beyond its edge,
+// thin triangles far away would have colours below black.
+centroid out vec3 vNormal;
+centroid out float vRidge;
+centroid out vec4 vCoverA;  // rock, scree, soil, grass
+centroid out vec3 vCoverB;  // sand, snow, stream bed
+centroid out vec3 vRock;    // the layer's colour
 
 void main() {
   vec4 relative = modelMatrix * vec4(position.xyz, 1.0);
