@@ -40,8 +40,8 @@ struct StripScratch {
 
 /// Fills `out` with the strip between `face` of `key` and the chunks one LOD finer across it, whether or not anybody
 /// draws them: it depends on the key and the face alone. Empty where the surface does not cross the face, or crosses it
-/// along one and the same line at both LODs. Densities are sampled near the surface alone, none where the heights of the
-/// columns rule it out. Requires is_valid(key) and key.lod > 0.
+/// along one and the same line at both LODs. Densities are sampled near the surface alone, none where the heights of
+/// the columns rule it out. Requires is_valid(key) and key.lod > 0.
 ///
 /// Positions are in steps of the *finer* LOD's lattice, 0..2 * cells * kStepsPerCell from the lowest corner of `key`.
 /// Every vertex is a vertex of the chunk or of one across the face, with its very normal, material and ridge. Triangles

@@ -53,7 +53,7 @@ class HttpFields {
  public:
   static constexpr std::size_t kMax = 64;
 
-  HttpFields() : at_() {}
+  HttpFields() {}  // not defaulted: that would clear the room wherever a request is made
   /// Requires room.
   void push(const HttpField& field) { at_.fields[count_++] = field; }
   const HttpField* begin() const { return at_.fields.data(); }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <asio/ip/address.hpp>
 #include <optional>
-#include <ranges>
 
 #include "server/net/url_text.hpp"
 
@@ -64,7 +63,8 @@ bool TrustedProxies::contains(const WholeAddress& address) const {
 
 WholeAddress TrustedProxies::client_of(const WholeAddress& peer, const HttpRequest& request) const {
   WholeAddress out = peer;
-  for (const HttpField& field : std::ranges::reverse_view(request.fields)) {
+  for (const HttpField* at = request.fields.end(); at != request.fields.begin();) {
+    const HttpField& field = *--at;
     if (!equal_ignoring_case(field.name, "x-forwarded-for")) continue;
     std::string_view rest = field.value;
     while (!rest.empty()) {
