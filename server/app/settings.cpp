@@ -83,8 +83,8 @@ const std::array kTable{
 
 /// What is built once, at the start.
 constexpr std::array<std::string_view, 15> kFixed{
-    "world",      "listen", "tcp_listen", "admin_listen",   "threads",    "net_threads", "cache_mib",
-    "disk_cache", "viewer", "tls_on",     "disk_cache_mib", "cold_queue", "job_s",       "cold_per_client", "pool_nice"};
+    "world",  "listen", "tcp_listen",     "admin_listen", "threads", "net_threads",     "cache_mib", "disk_cache",
+    "viewer", "tls_on", "disk_cache_mib", "cold_queue",   "job_s",   "cold_per_client", "pool_nice"};
 
 bool is_fixed(std::string_view key) {
   return std::find(kFixed.begin(), kFixed.end(), key) != kFixed.end();
