@@ -17,6 +17,9 @@ const root = fileURLToPath(new URL('../../', import.meta.url));
 const talus = process.env.TALUS ?? join(root, 'build/release/bin/talus');
 const ticks_per_s = 100; // of /proc: USER_HZ on every Linux
 
+/// As whoever starts it has it.
+const asUsers = { poolNice: 5 };
+
 const ms = (seconds) => (seconds === undefined ? '-' : (seconds * 1e3).toFixed(seconds < 0.1 ? 2 : 0));
 
 /// Resident and peak memory in MiB, and CPU seconds used so far, of a process.
@@ -40,7 +43,7 @@ const outcome = (report, name) => report.server.counters[`talus_chunk_requests_t
 async function viewers(counts = '1,10,50,100,250,500', seconds = '30') {
   console.log('viewers  first byte cold p50/p99 ms  cached p50/p99 ms  view complete p50/p99 s  chunks/s  built/s per core  server CPU  RSS MiB  faults');
   for (const count of counts.split(',')) {
-    const server = await startServer(['--connections-per-address', '12000', '--log-level', 'warning']);
+    const server = await startServer(['--connections-per-address', '12000', '--log-level', 'warning'], asUsers);
     try {
       const before = usage(server.pid);
       const report = await load(server, [join(root, 'client_sample/load/scenarios/flyers.toml'), '--fly', count, '--seconds', seconds]);
@@ -69,7 +72,7 @@ function hitRatio(report) {
 async function scanner(seconds = '40', mib = '16') {
   const scenario = join(root, 'client_sample/load/scenarios/scanner.toml');
   console.log('scanners  hit ratio %  cached p50/p99 ms (requests)  first p50/p99 ms  chunks built, scanned; faults');
-  const server = await startServer(['--log-level', 'warning', '--cache-mib', mib]);
+  const server = await startServer(['--log-level', 'warning', '--cache-mib', mib], asUsers);
   const ratios = [];
   const slowest = [];
   try {
@@ -112,7 +115,7 @@ async function joining(runs = '5') {
   const name = `talus${process.pid % 10000}`;
   const undo = shapedLink(name);
   try {
-    const server = await startServer(['--log-level', 'warning'], { ports: ['--listen', '10.213.0.1:0', '--tcp-listen', 'off', '--admin-listen', '127.0.0.1:0'] });
+    const server = await startServer(['--log-level', 'warning'], { ...asUsers, ports: ['--listen', '10.213.0.1:0', '--tcp-listen', 'off', '--admin-listen', '127.0.0.1:0'] });
     try {
       for (let i = 0; i < Number(runs); ++i) {
         const { stdout } = await promisify(execFile)('ip', ['netns', 'exec', name, talus, 'load', '--walk', '1', '--seconds', '12', '--json',

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "server/app/server.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace talus::server {
 
@@ -18,6 +19,8 @@ inline Settings quiet_settings() {
   settings.net_threads = 2;
   settings.cache_mib = 64;
   settings.log_level = "off";
+  settings.pool_nice = 0;  // other tests would go first
+  if (test::kIsSanitized) settings.job_s = settings.limits.wait_s = 200;
   return settings;
 }
 

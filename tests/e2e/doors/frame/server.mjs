@@ -56,8 +56,9 @@ export async function runToEnd(args, { ms = 10_000 } = {}) {
 }
 
 /// Starts talusd and waits for its ready line. `ready` is that line's object; `stop` sends a signal and gives the end.
-export async function startServer(args = [], { ports = freePorts } = {}) {
-  const { child, log, ended } = launch([...ports, ...args]);
+/// Its pool does not stand back for the browsers and compilers beside it, for which tests would wait, unless told to.
+export async function startServer(args = [], { ports = freePorts, poolNice = 0 } = {}) {
+  const { child, log, ended } = launch([...ports, '--pool-nice', String(poolNice), ...args]);
   const lines = createInterface({ input: child.stdout });
   const first = new Promise((resolve, reject) => {
     lines.once('line', resolve);
