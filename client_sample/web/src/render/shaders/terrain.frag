@@ -176,7 +176,9 @@ void main() {
   float sheen = pow(max(dot(bumped, halfway), 0.0), 24.0) * (0.10 * coverB.y + 0.22 * wet * coverB.x);
   radiance += uSunIrradiance * sheen * sun * 0.3183;
 
-  // Below the sea the water takes over, and sea.frag adds the air in front of it. The margin is what depth may round.
-  if (vPlace.y > -0.05 - 2e-4 * distance) radiance = throughAir(radiance, -toEye, distance, uEyeHeight);
+  // Below the sea the water takes over, and sea.frag adds the air in front of it. The margin is what depth may round. Far
+  // away a pixel holds both sides of a shore, and one without its air would be a bright line: the sea's floor has it there.
+  float submerged = vPlace.y > -0.05 - 2e-4 * distance ? 0.0 : 1.0 - smoothstep(1000.0, 4000.0, distance);
+  if (submerged < 1.0) radiance = mix(throughAir(radiance, -toEye, distance, uEyeHeight), radiance, submerged);
   colour = vec4(radiance, 1.0);
 }
