@@ -37,7 +37,11 @@ constexpr MapArea kRange{{78'000, -57'000}, 6000};
 constexpr MapArea kFlank{{79'500, -58'500}, 2500};
 /// A bare flank whose beds one can count.
 constexpr MapArea kBenches{{77'300, -57'000}, 700};
+/// Gullies through folded beds.
+constexpr MapArea kGorge{{75'264, -59'904}, 1200};
 constexpr BlockView kHeadland{{4845, 24, 39'280}, 200, -12, 110};
+/// A cliff of soft beds under a hard one.
+constexpr BlockView kHangingBed{{5738, 40, 30'112}, 0, -15, 200};
 
 using Settings = std::vector<std::pair<std::string_view, double>>;
 
@@ -67,10 +71,9 @@ Exhibit scales() {
 }
 
 Exhibit differential_erosion() {
-  Exhibit out{"differential_erosion", "none, strata.resistance, strata.ledge as well", {}};
+  Exhibit out{"differential_erosion", "none; strata.resistance and strata.ledge", {}};
   out.frames.push_back(frame_of("0", kBenches, {{"strata.resistance", 0}, {"strata.ledge", 0}}));
-  out.frames.push_back(frame_of("1", kBenches, {{"strata.ledge", 0}}));
-  out.frames.push_back(frame_of("2", kBenches, {}));
+  out.frames.push_back(frame_of("1", kBenches, {}));
   // Colours of beds would hide their forms.
   for (Frame& frame : out.frames) frame.layer = MapLayer::kSlope;
   return out;
@@ -100,9 +103,11 @@ std::vector<Exhibit> exhibits() {
       one_parameter("rounding_of_ridges", "erosion.rounding_ridge", {0, 0.2, 0.8}, kFlank),
       one_parameter("rounding_of_creases", "erosion.rounding_crease", {0, 0.2, 0.8}, kFlank),
       one_parameter("methods", "erosion.frequency_share", {0, 0.5, 1}, kRange),
+      one_parameter("resistance", "strata.resistance", {0, 0.7, 1}, kGorge),
       differential_erosion(),
       one_parameter("warp", "warp.reach_m", {0, 4, 6}, kHeadland),
       carving(),
+      one_parameter("alcoves", "alcoves.probability", {0, 0.8}, kHangingBed),
   };
 }
 

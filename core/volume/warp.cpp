@@ -63,10 +63,8 @@ bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid
       if (!any) fill_patch(controls, grid, patch);
       const float share = kPatchShare + (1.0f - kPatchShare) * smooth(-0.25f, 0.3f, patch[at]);
       any = true;
-      // Between nodes the surface is known by chords. The rise of chords has no scallops as one from the exact height
-      // has; and no rock stands higher than the surface up the slope, so that it hangs on to that.
-      const float rise = std::clamp(further - here.height_m, 0.0f, std::max(further - height[at], 0.0f));
-      jut[at] = rise * shown * share;
+      // From the column's own height, so that a bed bridges the joints in its wall: one that follows them falls to pieces.
+      jut[at] = std::max(further - height[at], 0.0f) * shown * share;
     }
   }
   return any;
