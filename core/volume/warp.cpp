@@ -63,7 +63,8 @@ bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid
       if (!any) fill_patch(controls, grid, patch);
       const float share = kPatchShare + (1.0f - kPatchShare) * smooth(-0.25f, 0.3f, patch[at]);
       any = true;
-      // From the column's own height, so that a bed bridges the joints in its wall: one that follows them falls to pieces.
+      // From the column's own height, so that a bed bridges the joints in its wall: one that follows them falls to
+      // pieces.
       jut[at] = std::max(further - height[at], 0.0f) * shown * share;
     }
   }
