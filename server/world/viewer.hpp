@@ -95,7 +95,7 @@ class Viewer {
   };
   /// In the order of the octree, which is that of the interest area, strips of a chunk by face; each once. A view has
   /// some 2,500 of these and changes ten times a second: a walk along two sorted vectors costs a tenth of what hash
-  /// maps cost, and a fifth of sorting them.
+  /// maps cost, and a third of sorting them.
   using States = std::vector<State>;
 
   static void sort_unique(States& states);
