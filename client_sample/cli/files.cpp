@@ -1,6 +1,5 @@
 #include "client_sample/cli/files.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,30 +21,13 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
-/// An open file, or nothing (errno says why).
-class Descriptor {
- public:
-  Descriptor(const std::string& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  explicit operator bool() const { return number_ >= 0; }
-  bool write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(number_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-  }
-  bool sync() const { return ::fsync(number_) == 0; }
-  bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
-
- private:
-  int number_;
-};
+/// Writes all and closes; with `is_synced` the bytes are on the disk then.
+bool write_whole(File file, std::string_view bytes, bool is_synced) {
+  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size() &&
+                          std::fflush(file.get()) == 0 && (!is_synced || ::fsync(::fileno(file.get())) == 0);
+  // The last bytes may fail only now, on a full disk for one.
+  return (std::fclose(file.release()) == 0) && is_written;
+}
 
 void complain(std::string_view verb, const std::string& path) {
   fmt::print(stderr, "talus: cannot {} {}: {}\n", verb, path, std::strerror(errno));
@@ -77,11 +59,9 @@ bool store_file(const std::string& path, std::string_view bytes) {
   }
   File file(std::fopen(path.c_str(), "wb"));
   if (!file) return complain("write", path), false;
-  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  // The last bytes may fail only now, on a full disk for one.
-  const bool is_closed = std::fclose(file.release()) == 0;
-  if (!is_written || !is_closed) complain("write", path);
-  return is_written && is_closed;
+  const bool is_written = write_whole(std::move(file), bytes, false);
+  if (!is_written) complain("write", path);
+  return is_written;
 }
 
 bool replace_file(const std::string& path, std::string_view bytes) {
@@ -92,17 +72,17 @@ bool replace_file(const std::string& path, std::string_view bytes) {
   // Where a link leads to, so that the link stays one.
   const fs::path target = is_there ? fs::canonical(path, fault) : fs::absolute(path, fault);
   const std::string beside = target.string() + ".new";
-  Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
+  File file(std::fopen(beside.c_str(), "wb"));
   if (!file) return complain("write", beside), false;
   // The bytes reach the disk before the name does; a name of bytes that do not would be an empty file after a power
   // cut.
-  if (!file.write(bytes) || !file.sync() || !file.close() || std::rename(beside.c_str(), target.c_str()) != 0) {
+  if (!write_whole(std::move(file), bytes, true) || std::rename(beside.c_str(), target.c_str()) != 0) {
     complain("write", target.string());
     ::unlink(beside.c_str());
     return false;
   }
-  const Descriptor folder(target.parent_path().string(), O_RDONLY | O_DIRECTORY);
-  if (folder) folder.sync();  // where a folder cannot be, the old file may come back: whole as well
+  // Where a folder cannot be synced, the old file may come back: whole as well.
+  if (const File folder(std::fopen(target.parent_path().c_str(), "r")); folder) ::fsync(::fileno(folder.get()));
   return true;
 }
 

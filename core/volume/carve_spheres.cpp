@@ -145,8 +145,8 @@ class Grower {
         const glm::dvec2 place{centre.x + static_cast<double>(draw.between(-jitter, jitter)),
                                centre.y + static_cast<double>(draw.between(-jitter, jitter))};
         const float shift = kVerticalJitter * draw.between(-jitter, jitter);
-        const float height =
-            seed.ceiling_m ? *seed.ceiling_m - radius * pass_.stretch + kCeilingJitter * shift : y_m + shift;
+        const float hung_m = seed.ceiling_m.value_or(0.0f) + (y_m - seed.y_m);
+        const float height = seed.ceiling_m ? hung_m - radius * pass_.stretch + kCeilingJitter * shift : y_m + shift;
         roofed(seed, place, height, radius, made < kMouthSpheres);
       }
       const glm::vec2 way = seed.ceiling_m ? along * kAlcoveStep : seed.inland;

@@ -63,9 +63,10 @@ bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid
       if (!any) fill_patch(controls, grid, patch);
       const float share = kPatchShare + (1.0f - kPatchShare) * smooth(-0.25f, 0.3f, patch[at]);
       any = true;
-      // From the column's own height, so that a bed bridges the joints in its wall: one that follows them falls to
-      // pieces.
-      jut[at] = std::max(further - height[at], 0.0f) * shown * share;
+      // To what beds reach by the relief between nodes, whatever the column's own joints and boulders: a bed bridges
+      // them. One that followed them, or reached less far from a joint's floor, would fall to pieces.
+      const float reached = here.height_m + std::max(further - here.height_m, 0.0f) * shown * share;
+      jut[at] = std::max(reached - height[at], 0.0f);
     }
   }
   return any;

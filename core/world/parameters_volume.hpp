@@ -66,7 +66,7 @@ inline constexpr std::array kVolumeParameters = std::to_array<ParameterInfo>({
   {"alcoves.spheres_low", "", 1, 6, 2, true, "Fewest spheres at each step: more means no single file."},
   {"alcoves.spheres_high", "", 1, 6, 4, true, "Most spheres at each step: more means wider, more broken walls."},
   {"alcoves.step_m", "m", 0.5, 8, 3, false, "Length of a step, 1.6 times as far along the wall: more goes further, until spheres no longer touch."},
-  {"alcoves.fall", "", -0.5, 0.5, 0.02, false, "Metres down per metre inwards: more leads down, below 0 up."},
+  {"alcoves.fall", "", -0.5, 0.5, 0.02, false, "Metres down from its bed per metre of step_m along the wall: more leads down, below 0 up into the bed."},
   {"alcoves.end_radius", "", 0.2, 1.5, 1, false, "Radius of the last step over the first: less means pointed ends, above 1 wide ones."},
   {"alcoves.jitter", "", 0, 1, 0.8, false, "How far a sphere is displaced, in its radii: more means more irregular shapes."},
   {"alcoves.stretch", "", 0.3, 2.5, 0.6, false, "Height over width of a sphere: more means taller ones, less flatter ones."},

@@ -135,7 +135,7 @@ std::size_t Channel::write_some(std::span<const asio::const_buffer> buffers, asi
     return 0;
   }
   if (tls_ == nullptr) return write_clear(buffers, error);
-  std::array<asio::const_buffer, 2 * 64> left;
+  std::array<asio::const_buffer, kBuffersAtOnce> left;
   std::size_t count = 0;
   for (const asio::const_buffer& buffer : buffers.first(std::min(buffers.size(), left.size()))) {
     if (buffer.size() != 0) left[count++] = buffer;

@@ -49,19 +49,26 @@ std::string_view reason_of(int status) {
   }
 }
 
-/// Writes pieces of text one after the other into room that is known to be enough.
+/// Writes pieces of text one after the other into room that must be enough.
 class Pen {
  public:
-  explicit Pen(char* at) : at_(at) {}
+  explicit Pen(std::span<char> room) : at_(room.data()), end_(room.data() + room.size()) {}
 
   /// A literal, whose length the compiler knows.
   template <std::size_t N>
   void put(const char (&text)[N]) {
+    need(N - 1);
     std::memcpy(at_, text, N - 1);
     at_ += N - 1;
   }
-  void put(std::string_view text) { at_ = std::copy(text.begin(), text.end(), at_); }
-  void put(std::size_t value) { at_ = std::to_chars(at_, at_ + kDigitsMax, value).ptr; }
+  void put(std::string_view text) {
+    need(text.size());
+    at_ = std::copy(text.begin(), text.end(), at_);
+  }
+  void put(std::size_t value) {
+    need(kDigitsMax);
+    at_ = std::to_chars(at_, end_, value).ptr;
+  }
   /// One header line, or nothing when it has no value. `name` ends in ": ".
   template <std::size_t N>
   void put_field(const char (&name)[N], std::string_view value) {
@@ -74,7 +81,9 @@ class Pen {
 
  private:
   static constexpr std::size_t kDigitsMax = 20;
+  void need(std::size_t bytes) const { TALUS_CHECK(bytes <= static_cast<std::size_t>(end_ - at_)); }
   char* at_;
+  char* const end_;
 };
 
 }  // namespace
@@ -175,7 +184,7 @@ void write_head(const HttpAnswer& answer, const HeadOptions& options, std::strin
                            answer.cache_control.size() + options.allow_origin.size() + options.request_id.size() +
                            answer.fields.size();
   out.resize_and_overwrite(room, [&](char* begin, std::size_t) {
-    Pen pen(begin);
+    Pen pen({begin, room});
     pen.put("HTTP/1.1 ");
     pen.put(static_cast<std::size_t>(answer.status));
     pen.put(" ");
@@ -210,9 +219,7 @@ void write_head(const HttpAnswer& answer, const HeadOptions& options, std::strin
       pen.put("Connection: keep-alive\r\n");
     }
     pen.put("\r\n");
-    const auto written = static_cast<std::size_t>(pen.at() - begin);
-    TALUS_CHECK(written <= room);
-    return written;
+    return static_cast<std::size_t>(pen.at() - begin);
   });
 }
 

@@ -36,7 +36,7 @@ char lower(char c) {
 }
 
 /// What a byte may be part of.
-enum CharKind : std::uint8_t { kTokenChar = 1, kHostChar = 2 };
+enum CharKind : std::uint8_t { kTokenChar = 1, kHostChar = 2, kTargetChar = 4 };
 
 constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
   constexpr std::string_view kTokenMarks = "!#$%&'*+-.^_`|~";
@@ -48,7 +48,9 @@ constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
     const bool is_letter_or_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
     const bool is_token = is_letter_or_digit || kTokenMarks.find(c) != std::string_view::npos;
     const bool is_host = is_letter_or_digit || kHostMarks.find(c) != std::string_view::npos;
-    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_host ? kHostChar : 0));
+    const bool is_target = i > 0x20 && i < 0x7F && c != '#';
+    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_host ? kHostChar : 0) |
+                                         (is_target ? kTargetChar : 0));
   }
   return kinds;
 }();
@@ -78,19 +80,6 @@ std::uint64_t load_eight(const char* at) {
   std::uint64_t eight = 0;
   std::memcpy(&eight, at, kEight);
   return eight;
-}
-
-/// Whether all of it is visible ASCII but '#'.
-bool is_target(std::string_view text) {
-  const auto unfit = [](std::uint64_t eight) {
-    return below(eight, 0x21) | equal(eight, 0x7F) | equal(eight, '#') | (eight & (kEach * 0x80));
-  };
-  std::uint64_t found = 0;
-  for (; text.size() >= kEight; text.remove_prefix(kEight)) found |= unfit(load_eight(text.data()));
-  std::array<char, kEight> rest;
-  rest.fill('/');
-  std::copy(text.begin(), text.end(), rest.begin());
-  return (found | unfit(load_eight(rest.data()))) == 0;
 }
 
 /// The first of [from, to) that is a control character but a tab, or `to`.
@@ -131,7 +120,7 @@ bool split_target(std::string_view target, HttpRequest& out) {
     target.remove_prefix(slash);
   }
   if (target == "*") return out.method == HttpMethod::kOptions;
-  if (target.empty() || target.front() != '/' || !is_target(target)) return false;
+  if (target.empty() || target.front() != '/' || !is_all(kTargetChar, target)) return false;
   const std::size_t mark = target.find('?');
   out.path = target.substr(0, mark);
   if (mark != std::string_view::npos) out.query = target.substr(mark + 1);
@@ -171,8 +160,8 @@ std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& lim
   return std::nullopt;
 }
 
-/// What http_parser tells of one head, all of which it is given at once: a name, a value or a target comes in one
-/// piece, but for a value with a line end or a colon of its own, which comes in adjacent ones.
+/// What http_parser tells of one head. A name, a value or the target may come in pieces, always of one stretch of
+/// bytes.
 struct Told {
   HttpRequest& request;
   std::string_view target;

@@ -94,10 +94,15 @@ class SpareDescriptor {
  public:
   SpareDescriptor() { reopen(); }
 
-  void refuse_one(int listening) {
+  /// False when nobody was there, or the descriptor has gone to somebody else.
+  bool refuse_one(int listening) {
     descriptor_.close();
-    if (const Arrival arrival = take_in(listening); arrival.socket.is_open()) say_full(arrival.socket);
+    Arrival arrival = take_in(listening);
+    const bool is_refused = arrival.socket.is_open();
+    if (is_refused) say_full(arrival.socket);
+    arrival.socket.close();
     reopen();
+    return is_refused;
   }
 
  private:
@@ -250,9 +255,8 @@ Awaitable<void> NetServer::Threads::accept_loop(Listener* listener) {
       const int fault = errno;
       if (arrival.socket.is_open()) {
         welcome(*listener, std::move(arrival), *io[next++ % io.size()]);
-      } else if (fault == EMFILE || fault == ENFILE) {
-        net.metrics.add(Count::kConnectionsRefusedDescriptors);
-        spare.refuse_one(acceptor.native_handle());
+      } else if ((fault == EMFILE || fault == ENFILE) && spare.refuse_one(acceptor.native_handle())) {
+        net.metrics.add(Count::kConnectionsRefusedDescriptors);  // said whether or not anybody is there
       } else if (fault != ECONNABORTED && fault != EINTR) {
         is_short_of_something = fault != EAGAIN && fault != EWOULDBLOCK;
         break;

@@ -34,6 +34,13 @@ bool is_before(const Piece& a, const Piece& b) {
   return a.key != b.key ? is_before_in_octree(a.key, b.key) : a.face < b.face;
 }
 
+/// The first from `at` on that does not come before `piece`.
+template <class Iterator>
+Iterator skip_to(Iterator at, Iterator end, const Piece& piece) {
+  while (at != end && at->piece != piece && is_before(at->piece, piece)) ++at;
+  return at;
+}
+
 /// Order of the heap. Equal urgencies are ordered by piece, so that equal views give equal streams.
 bool is_less_urgent(const WantedPiece& a, const WantedPiece& b) {
   return a.urgency != b.urgency ? a.urgency > b.urgency : a.piece > b.piece;
@@ -79,15 +86,18 @@ bool Viewer::on_message(const protocol::Message& message) {
 
 /// Keeps one state of each piece; all of one piece are in one phase and want the same.
 void Viewer::sort_unique(States& states) {
-  std::sort(states.begin(), states.end(), [](const State& a, const State& b) { return is_before(a.piece, b.piece); });
+  std::ranges::sort(states, is_before, &State::piece);
   const auto end =
       std::unique(states.begin(), states.end(), [](const State& a, const State& b) { return a.piece == b.piece; });
   states.erase(end, states.end());
 }
 
+Viewer::States::iterator Viewer::place_in(States& states, const Piece& piece) {
+  return std::ranges::lower_bound(states, piece, is_before, &State::piece);
+}
+
 Viewer::State* Viewer::find_in(States& states, const Piece& piece) {
-  const auto at = std::lower_bound(states.begin(), states.end(), piece,
-                                   [](const State& state, const Piece& p) { return is_before(state.piece, p); });
+  const auto at = place_in(states, piece);
   return at == states.end() || at->piece != piece ? nullptr : &*at;
 }
 
@@ -154,8 +164,7 @@ void Viewer::add_wants(States& states, States wants) {
     }
   }
   const auto middle = states.insert(states.end(), fresh.begin(), fresh.end());
-  std::inplace_merge(states.begin(), middle, states.end(),
-                     [](const State& a, const State& b) { return is_before(a.piece, b.piece); });
+  std::ranges::inplace_merge(states, middle, is_before, &State::piece);
 }
 
 /// Of what is held nobody asks, so it is not kept but found when it is needed.
@@ -171,7 +180,7 @@ double Viewer::urgency_of(const State& state) {
 void Viewer::merge_into(States& next, Change& change) {
   auto at = next.begin();
   for (const State& old : chunks_) {
-    while (at != next.end() && at->piece != old.piece && is_before(at->piece, old.piece)) ++at;
+    at = skip_to(at, next.end(), old.piece);
     if (at != next.end() && at->piece == old.piece) {
       at->phase = old.phase;
       at->faces = old.faces;
@@ -226,11 +235,11 @@ void Viewer::merge_strips(const States& before, Change& change) {
   auto at = next.begin();
   auto was = before.begin();
   for (const State& old : strips_) {
-    const ChunkKey& key = old.piece.key;
-    while (was != before.end() && was->piece.key != key && is_before_in_octree(was->piece.key, key)) ++was;
-    const bool is_chunk_wanted = is_of_target(key);
-    const bool is_lost = old.phase == Phase::kHeld && is_chunk_wanted && (was == before.end() || was->piece.key != key);
-    while (at != next.end() && at->piece != old.piece && is_before(at->piece, old.piece)) ++at;
+    const Piece chunk{old.piece.key, {}};
+    was = skip_to(was, before.end(), chunk);
+    const bool is_chunk_wanted = is_of_target(chunk.key);
+    const bool is_lost = old.phase == Phase::kHeld && is_chunk_wanted && (was == before.end() || was->piece != chunk);
+    at = skip_to(at, next.end(), old.piece);
     if (at != next.end() && at->piece == old.piece) {
       at->phase = is_lost ? Phase::kWanted : old.phase;
       if (old.phase == Phase::kInFlight) change.moved.push_back({old.piece, urgency_of(*at)});
@@ -300,8 +309,7 @@ void Viewer::put_back(const Piece& piece) {
 /// A chunk has just been sent: what closes it to its coarser neighbours is wanted now.
 void Viewer::want_strips_of(const State& finer) {
   for_each_strip_of(finer, [&](const Piece& strip) {
-    const auto at = std::lower_bound(strips_.begin(), strips_.end(), strip,
-                                     [](const State& state, const Piece& p) { return is_before(state.piece, p); });
+    const auto at = place_in(strips_, strip);
     if (at != strips_.end() && at->piece == strip) return;
     const State wanted{strip, Phase::kWanted, 0, true};
     strips_.insert(at, wanted);

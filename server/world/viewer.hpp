@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -89,9 +90,9 @@ class Viewer {
   struct State {
     Piece piece;
     Phase phase = Phase::kWanted;
-    std::uint8_t faces = 0;       ///< of a held chunk
-    bool is_of_view = false;      ///< the view, or a chunk of the target, asks for it
-    double want_urgency = 1e300;  ///< of the client's own list, when that has it
+    std::uint8_t faces = 0;                                         ///< of a held chunk
+    bool is_of_view = false;                                        ///< the view, or a chunk of the target, asks for it
+    double want_urgency = std::numeric_limits<double>::infinity();  ///< of the client's own list, when that has it
   };
   /// In the order of the octree, which is that of the interest area, strips of a chunk by face; each once. A view has
   /// some 2,500 of these and changes ten times a second: a walk along two sorted vectors costs a tenth of what hash
@@ -99,6 +100,7 @@ class Viewer {
   using States = std::vector<State>;
 
   static void sort_unique(States& states);
+  static States::iterator place_in(States& states, const Piece& piece);
   static State* find_in(States& states, const Piece& piece);
   static void add_wants(States& states, States wants);
   States target() const;

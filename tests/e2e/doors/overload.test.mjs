@@ -1,5 +1,8 @@
 // More than one server can do: cold work is refused with a time to come back, and what is cheap still works.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readdirSync } from 'node:fs';
+import { connect } from 'node:net';
 import { test } from 'node:test';
 import { request } from './frame/http.mjs';
 import { startServer } from './frame/server.mjs';
@@ -36,6 +39,39 @@ test('connections beyond the limit of an address are refused, and those within i
     }
     await new Promise((resolve) => setTimeout(resolve, 200));
     assert.equal((await request(server.ready.http, '/healthz')).status, 200);
+  } finally {
+    await server.stop();
+  }
+});
+
+/// What a connection that says nothing is told within `ms`; '' for nothing.
+function toldAtOnce(at, ms) {
+  return new Promise((resolve) => {
+    const [host, port] = at.split(':');
+    let text = '';
+    const socket = connect({ host, port: Number(port) });
+    socket.setEncoding('utf8').on('data', (more) => (text += more)).on('error', () => {});
+    setTimeout(() => resolve({ text, socket }), ms);
+  });
+}
+
+test('a server without descriptors tells those who come, counts each once, and takes others in again', async () => {
+  const server = await startServer(['--connections-per-address', '200', '--silent-s', '60']);
+  const limit = (count) => execFileSync('prlimit', ['--pid', String(server.pid), `--nofile=${count}:`]);
+  try {
+    const used = new Set(readdirSync(`/proc/${server.pid}/fd`).map(Number));
+    let free = 0;
+    while (used.has(free)) ++free;
+    limit(free + 8);
+    const told = await Promise.all(Array.from({ length: 24 }, () => toldAtOnce(server.ready.http, 2000)));
+    const refused = told.filter(({ text }) => text.startsWith('HTTP/1.1 503 ')).length;
+    for (const { socket } of told) socket.destroy();
+    assert.ok(refused >= 12 && refused < 24, `${refused} of 24 were refused`);
+    limit(1024);
+    assert.equal((await request(server.ready.http, '/healthz')).status, 200);
+    const text = String((await request(server.ready.admin, '/metrics')).body);
+    const counted = Number(text.match(/^talus_connections_refused_total\{limit="descriptors"\} (\d+)$/m)[1]);
+    assert.equal(counted, refused);
   } finally {
     await server.stop();
   }

@@ -97,29 +97,59 @@ TEST(Carving, WithoutAPassHasNoneOfItsSpheres) {
   }
 }
 
+/// All that is carved along the wall of a made-up coast, `tiles` to either side.
+std::vector<CarveSphere> carved_along(const MadeUpVolume& volume, Relief& relief, std::int64_t tiles) {
+  std::vector<CarveSphere> spheres;
+  for (std::int64_t tile = -tiles; tile < tiles; ++tile) grow_tile(volume.carve, relief, tile, -1, spheres);
+  return spheres;
+}
+
+float top_of(const CarveSphere& sphere) {
+  return sphere.y_m + sphere.radius_m / sphere.inverse_stretch;
+}
+
 TEST(Carving, HangsAlcovesFromTheBaseOfHardBeds) {
   CliffCoast coast(3);
   const MadeUpVolume volume(coast);
   MadeUpVolume::Memory memory;
   Relief relief(coast, memory.relief);
   int whole = 0;
-  for (std::int64_t tile = -24; tile < 24; ++tile) {
-    std::vector<CarveSphere> spheres;
-    grow_tile(volume.carve, relief, tile, -1, spheres);
-    for (const CarveSphere& s : spheres) {
-      if (s.kind != CarveKind::kAlcoves) continue;
-      const float top_m = s.y_m + s.radius_m / s.inverse_stretch;
-      const float under_m = *coast.ceiling_near(0, 0, top_m - 0.5f) - top_m;
-      EXPECT_GT(under_m, -0.5f) << "it breaks through the hard bed at " << top_m;
-      // Where the roof rule left it its height it reaches the bed.
-      const bool is_whole = std::abs(1.0f / s.inverse_stretch - volume.carve.pass(s.kind).stretch) < 0.01f;
-      if (is_whole) {
-        EXPECT_LT(under_m, 0.5f) << top_m;
-      }
-      whole += is_whole ? 1 : 0;
+  for (const CarveSphere& s : carved_along(volume, relief, 24)) {
+    if (s.kind != CarveKind::kAlcoves) continue;
+    const float top_m = top_of(s);
+    const float under_m = *coast.ceiling_near(0, 0, top_m - 0.5f) - top_m;
+    EXPECT_GT(under_m, -0.5f) << "it breaks through the hard bed at " << top_m;
+    // Where the roof rule left it its height it reaches the bed.
+    const bool is_whole = std::abs(1.0f / s.inverse_stretch - volume.carve.pass(s.kind).stretch) < 0.01f;
+    if (is_whole) {
+      EXPECT_LT(under_m, 0.5f) << top_m;
     }
+    whole += is_whole ? 1 : 0;
   }
   EXPECT_GT(whole, 20);
+}
+
+TEST(Carving, LeadsAlcovesDownFromTheirBedByTheirFall) {
+  CliffCoast coast(3);
+  MadeUpVolume level(coast);
+  CarvePass& alcoves = level.carve.passes[static_cast<std::size_t>(CarveKind::kAlcoves)];
+  alcoves.fall = 0;
+  MadeUpVolume falling(coast);
+  falling.carve = level.carve;
+  falling.carve.passes[static_cast<std::size_t>(CarveKind::kAlcoves)].fall = 0.5f;
+  MadeUpVolume::Memory memory;
+  Relief relief(coast, memory.relief);
+  const auto mean_height_m = [&](const MadeUpVolume& volume) {
+    double sum_m = 0;
+    int count = 0;
+    for (const CarveSphere& s : carved_along(volume, relief, 24)) {
+      if (s.kind != CarveKind::kAlcoves) continue;
+      sum_m += static_cast<double>(s.y_m);
+      ++count;
+    }
+    return sum_m / count;
+  };
+  EXPECT_LT(mean_height_m(falling), mean_height_m(level) - 0.3);
 }
 
 TEST(Carving, LeavesARoofOverEveryCave) {
@@ -128,22 +158,17 @@ TEST(Carving, LeavesARoofOverEveryCave) {
   MadeUpVolume::Memory memory;
   Relief relief(coast, memory.relief);
   int looked_at = 0;
-  for (std::int64_t tile = -8; tile < 8; ++tile) {
-    std::vector<CarveSphere> spheres;
-    grow_tile(volume.carve, relief, tile, -1, spheres);
-    for (const CarveSphere& s : spheres) {
-      if (s.kind == CarveKind::kArches) continue;
-      const float top_m = s.y_m + s.radius_m / s.inverse_stretch;
-      // A mouth's roof is looked for 1.6 radii further in.
-      const auto reach_m = static_cast<double>(1.6f * s.radius_m);
-      float highest = relief.height_at(s.x_m, s.z_m);
-      for (const double x : {-1.0, 0.0, 1.0}) {
-        for (const double z : {-1.0, 0.0, 1.0})
-          highest = std::max(highest, relief.height_at(s.x_m + reach_m * x, s.z_m + reach_m * z));
-      }
-      EXPECT_LT(top_m, highest) << "nothing is above it within a mouth's reach";
-      ++looked_at;
+  for (const CarveSphere& s : carved_along(volume, relief, 8)) {
+    if (s.kind == CarveKind::kArches) continue;
+    // A mouth's roof is looked for 1.6 radii further in.
+    const auto reach_m = static_cast<double>(1.6f * s.radius_m);
+    float highest = relief.height_at(s.x_m, s.z_m);
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0})
+        highest = std::max(highest, relief.height_at(s.x_m + reach_m * x, s.z_m + reach_m * z));
     }
+    EXPECT_LT(top_of(s), highest) << "nothing is above it within a mouth's reach";
+    ++looked_at;
   }
   EXPECT_GT(looked_at, 100);
 }
