@@ -40,6 +40,7 @@ beat_along() {
   exec {quiet}<> <(:)  # never written to: a sleep that leaves no process behind
   while true; do
     read -rt "$every" -u "$quiet" || true
+    kill -0 $$ 2>/dev/null || exit 0 # ended by a signal
     local last
     last=$(tail -c 400 "$log" 2>/dev/null | tr '\r' '\n' | grep -v '^[[:space:]]*$' | tail -n 1 | cut -c 1-90) || last=
     if [ -t 1 ]; then
