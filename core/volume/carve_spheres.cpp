@@ -27,6 +27,9 @@ constexpr float kInlandWide = 0.5f;
 constexpr float kRoofShare = 0.35f;
 /// Spheres flatter than this are dropped.
 constexpr float kRadiusMin_m = 0.8f;
+/// Rock as high as a sphere's ceiling must stand behind it, as far as its radius and this: a sphere that goes through a
+/// stack would leave its top in the air.
+constexpr float kBehind_m = 3.0f;
 /// The first spheres open a mouth: their roof is looked up this many radii further in.
 constexpr int kMouthSpheres = 2;
 constexpr float kMouthShare = 1.6f;
@@ -156,14 +159,19 @@ class Grower {
     }
   }
 
-  /// Adds a sphere as high as the rock above allows.
+  /// The surface further inland than a place.
+  float height_behind(const Seed& seed, glm::dvec2 place, float further_m) {
+    return relief_.height_at(place.x + static_cast<double>(seed.inland.x * further_m),
+                             place.y + static_cast<double>(seed.inland.y * further_m));
+  }
+
+  /// Adds a sphere as high as the rock above allows, where there is rock behind it.
   void roofed(const Seed& seed, glm::dvec2 place, float y_m, float radius, bool is_mouth) {
-    const float further = is_mouth ? kMouthShare * radius : 0.0f;
-    const float surface = relief_.height_at(place.x + static_cast<double>(seed.inland.x * further),
-                                            place.y + static_cast<double>(seed.inland.y * further));
+    const float surface = height_behind(seed, place, is_mouth ? kMouthShare * radius : 0.0f);
     const float room = surface - pass_.roof_m - kRoofShare * radius - y_m;
     const float vertical = std::min(radius * pass_.stretch, room);
     if (radius < kRadiusMin_m || !(vertical >= kRadiusMin_m)) return;
+    if (height_behind(seed, place, radius + kBehind_m) < y_m + vertical) return;
     add(place, y_m, radius, radius / vertical);
   }
 

@@ -144,8 +144,10 @@ void Field::part(int k, std::size_t first, std::size_t end, float* out) {
   for (const std::uint32_t n : memory_.layer_spheres) is_carved = carve_row(k, columns_.spheres[n], span) || is_carved;
   if (!is_carved) return;
   const double z_m = static_cast<double>(columns_.grid.z_voxel + k * columns_.grid.step_voxel) * columns_.grid.voxel_m;
+  const std::size_t at = static_cast<std::size_t>(k) * stride_ + first;
   subtract_row({memory_.carve.data() + first, memory_.still_x.data() + first, to_still(z_m), to_pillars(y_m_),
-                rough_row(k, span), controls_.roughness_m, controls_.blend_m},
+                rough_row(k, span), controls_.roughness_m, controls_.blend_m, y_m_, columns_.height_m + at,
+                columns_.jut_m == nullptr ? nullptr : columns_.jut_m + at},
                span.size(), out);
 }
 

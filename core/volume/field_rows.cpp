@@ -100,6 +100,16 @@ HWY_INLINE V outside_pillar(V distance, V away2, V level2) {
   return hn::IfThenElse(hn::Lt(away2, reach), smooth_max(distance, pillar, 1.0f), distance);
 }
 
+/// By how much samples count as nearer to carved space than they are: 0 in a column's own rock, kFront_m where its
+/// hardest bed ends. Fades out over the band's last metre.
+template <class V>
+HWY_INLINE V in_front(V distance, V above, V jut) {
+  const hn::DFromV<V> d;
+  const V out = saturate(hn::Div(above, hn::Max(jut, hn::Set(d, 1e-3f))));
+  const V near = saturate(hn::Sub(hn::Set(d, kCarveBand_m), distance));
+  return hn::IfThenElseZero(hn::Gt(jut, hn::Zero(d)), hn::Mul(hn::Mul(out, near), hn::Set(d, kFront_m)));
+}
+
 void subtract_row_target(const CarvedRow& r, std::size_t width, float* HWY_RESTRICT density) {
   const hn::ScalableTag<float> d;
   using V = hn::Vec<decltype(d)>;
@@ -110,6 +120,10 @@ void subtract_row_target(const CarvedRow& r, std::size_t width, float* HWY_RESTR
       const V fade = saturate(
           hn::Mul(hn::Sub(hn::Set(d, kRoughEnd_m), hn::Abs(c)), hn::Set(d, 1.0f / (kRoughEnd_m - kRoughFull_m))));
       c = hn::Add(c, hn::Mul(hn::Mul(hn::LoadU(d, r.noise + i), hn::Set(d, r.roughness_m)), fade));
+    }
+    if (r.jut != nullptr) {
+      const V above = hn::Sub(hn::Set(d, r.y_m), hn::LoadU(d, r.height + i));
+      c = hn::Sub(c, in_front(c, above, hn::LoadU(d, r.jut + i)));
     }
     const V dx = hn::LoadU(d, r.still_x + i);
     c = outside_pillar(c, hn::Add(hn::Mul(dx, dx), hn::Set(d, r.still_z * r.still_z)),

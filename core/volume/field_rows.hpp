@@ -27,15 +27,23 @@ void sphere_row(const SphereRow& row, std::size_t first, std::size_t end, float*
 bool any_rough(const float* distance, std::size_t width);
 
 /// What is carved out of a row: distances to the walls, the distance to the next still column along x and z and, along
-/// y, to where pillars stand, and noise (or null where no sample is near a wall).
+/// y, to where pillars stand, noise (or null where no sample is near a wall), and the columns' surface with how far it
+/// juts (or null where nothing does).
 struct CarvedRow {
   const float *distance, *still_x;
   float still_z, still_y;
   const float* noise;
   float roughness_m, blend_m;
+  float y_m;
+  const float *height, *jut;
 };
 /// density = smooth maximum of itself and minus the distance to carved space.
 void subtract_row(const CarvedRow& row, std::size_t width, float* density);
+
+/// Carved space takes with it what stands out in front of it: the tip of a bed that juts whole counts as this much
+/// nearer to the walls than it is, in metres, its root as near as it is. Otherwise tips would stay in the air where
+/// the slope that they come from is carved away.
+inline constexpr float kFront_m = 3.0f;
 
 /// Radius of the pillars around still columns.
 inline constexpr float kPillar_m = 1.1f;

@@ -17,6 +17,23 @@ float smooth(float low, float high, float v) {
 /// Places differ in how much of their beds shows: this share at least.
 constexpr float kPatchShare = 0.35f;
 
+/// Columns of the fan up the slope. Fewer would step over the crest of a fin from one side of it and not from the
+/// other.
+constexpr int kFanColumns = 3;
+/// Where beds show more than this, they bridge joints wholly.
+constexpr float kBridging = 0.25f;
+
+/// The highest that the surface rises over the fan: `reach` slopes up from a column.
+float highest_of_fan(Relief& relief, double x_m, double z_m, const ReliefPoint& here, float reach) {
+  float highest_m = here.height_m;
+  for (int n = 1; n <= kFanColumns; ++n) {
+    const float part = reach * (static_cast<float>(n) / kFanColumns);
+    highest_m = std::max(highest_m, relief.height_at(x_m + static_cast<double>(here.slope_x * part),
+                                                     z_m + static_cast<double>(here.slope_z * part)));
+  }
+  return highest_m;
+}
+
 /// Noise of one octave, with its slopes, which nobody reads.
 void fill_patch(const WarpControls& controls, const ColumnGrid& grid, std::vector<float>& memory) {
   const std::size_t count = sample_count(grid);
@@ -56,17 +73,15 @@ bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid
       const float slope = std::sqrt(here.slope_x * here.slope_x + here.slope_z * here.slope_z);
       const float shown = smooth(controls.slope_low, controls.slope_high, slope) * gate;
       if (!(shown > 0.0f)) continue;
-      const float reach = controls.reach_m / slope;
-      const float further = relief.height_at(x_m + static_cast<double>(here.slope_x * reach),
-                                             z_m + static_cast<double>(here.slope_z * reach));
+      const float highest_m = highest_of_fan(relief, x_m, z_m, here, controls.reach_m / slope);
       const std::size_t at = static_cast<std::size_t>(k) * stride + static_cast<std::size_t>(i);
       if (!any) fill_patch(controls, grid, patch);
       const float share = kPatchShare + (1.0f - kPatchShare) * smooth(-0.25f, 0.3f, patch[at]);
       any = true;
       // To what beds reach by the relief between nodes, whatever the column's own joints and boulders: a bed bridges
       // them. One that followed them, or reached less far from a joint's floor, would fall to pieces.
-      const float reached = here.height_m + std::max(further - here.height_m, 0.0f) * shown * share;
-      jut[at] = std::max(reached - height[at], 0.0f);
+      const float reached = here.height_m + (highest_m - here.height_m) * shown * share;
+      jut[at] = std::max(reached - height[at], 0.0f) * std::min(shown / kBridging, 1.0f);
     }
   }
   return any;

@@ -1,10 +1,10 @@
 // Strata warp: how far a column's surface stands out where its rock is hardest. Pure.
 //
 // Problem: evaluating the surface at p + d * w for each voxel (d up the slope, w from the hardness of the rock at that
-// height) costs a surface per voxel, and its first order breaks up at the rims of cliffs. Answer: a fan of two columns.
-// The second one is the surface `reach` metres up the slope, read from fine tiles; at a voxel the surface is between
-// the two by hardness. The second is never below the first, so rock is only added, and what is added is joined to the
-// slope it comes from at its own level: nothing floats.
+// height) costs a surface per voxel, and its first order breaks up at the rims of cliffs. Answer: a fan of columns up
+// the slope, read from fine tiles, as far as `reach` metres; at a voxel the surface is between the column's own and the
+// highest of the fan by hardness. That is never below the first, so rock is only added, and what is added is joined to
+// the slope it comes from at its own level: nothing floats.
 #pragma once
 
 #include "core/grid/column_grid.hpp"

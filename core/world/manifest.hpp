@@ -15,7 +15,7 @@
 namespace talus {
 
 /// Raised by every change that moves one bit of any chunk of any world.
-inline constexpr std::uint32_t kGeneratorVersion = 4;
+inline constexpr std::uint32_t kGeneratorVersion = 5;
 inline constexpr std::size_t kWorldNameMax = 32;  ///< bytes of [a-z0-9_-]
 
 struct Manifest {
