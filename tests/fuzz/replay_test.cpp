@@ -10,11 +10,14 @@
 
 #include "tests/fuzz/fuzz_one.hpp"
 
+/// The folder of the target's corpus; the build writes it.
+extern const char* const fuzz_corpus;
+
 namespace {
 
 std::vector<std::string> corpus() {
   std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(TALUS_CORPUS)) paths.push_back(entry.path().string());
+  for (const auto& entry : std::filesystem::directory_iterator(fuzz_corpus)) paths.push_back(entry.path().string());
   std::ranges::sort(paths);
   std::vector<std::string> out;
   for (const std::string& path : paths) {
