@@ -43,7 +43,7 @@ void subtract_row(const CarvedRow& row, std::size_t width, float* density);
 /// Carved space takes with it what stands out in front of it: the tip of a bed that juts whole counts as this much
 /// nearer to the walls than it is, in metres, its root as near as it is. Otherwise tips would stay in the air where
 /// the slope that they come from is carved away.
-inline constexpr float kFront_m = 3.0f;
+inline constexpr float kFront_m = 1.5f;
 
 /// Radius of the pillars around still columns.
 inline constexpr float kPillar_m = 1.1f;
