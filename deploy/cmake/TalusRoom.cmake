@@ -1,10 +1,6 @@
-# talus_read_together(TARGET): its sources are compiled eight at a time, which reads the headers of the standard library
-# and Asio once for all of them: half the time, where nobody changes one source and builds again. Kernels stay alone:
-# Highway compiles each several times over.
-#
-# Under a sanitizer kernels are the run: most of it is the world's evaluation. Highway's functions are inlined, and each of
-# their thousands of temporaries would be marked in shadow memory when its life begins and ends: two thirds of a kernel's
-# time. And a kernel that keeps nothing itself reads and writes what is its caller's, whose own accesses the thread
+# talus_sanitize_kernel(SOURCE): most of a run under a sanitizer is the world's evaluation. Highway's functions are inlined,
+# and each of their thousands of temporaries would be marked in shadow memory when its life begins and ends: two thirds of a
+# kernel's time. And a kernel that keeps nothing itself reads and writes what is its caller's, whose own accesses the thread
 # sanitizer sees.
 function(talus_sanitize_kernel source)
   if(TALUS_SANITIZE STREQUAL "address")
@@ -17,6 +13,9 @@ function(talus_sanitize_kernel source)
   endif()
 endfunction()
 
+# talus_read_together(TARGET): its sources are compiled eight at a time, which reads the headers of the standard library
+# and Asio once for all of them: half the time, where nobody changes one source and builds again. Kernels stay alone:
+# Highway compiles each several times over.
 function(talus_read_together target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
