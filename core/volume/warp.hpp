@@ -19,7 +19,8 @@ namespace talus {
 bool warp_columns(const WarpControls& controls, Relief& relief, const ColumnGrid& grid, const float* height,
                   std::vector<float>& patch, float* jut);
 
-/// Radius of the ball around a lattice point of kStill_m within which warp fades to nothing.
-inline constexpr float kWarpStillRadius_m = 2.5f;
+/// Radius of the ball around a lattice point of kStill_m within which warp fades to nothing. Every ball is a pit in a
+/// wall, in rows that catch the eye where they are wider than a voxel of LOD 0 or two.
+inline constexpr float kWarpStillRadius_m = 1.1f;
 
 }  // namespace talus
