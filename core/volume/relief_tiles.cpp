@@ -58,6 +58,7 @@ const ReliefTile& Relief::tile(std::vector<ReliefTile>& slots, std::int64_t wind
   ReliefTile& found = slots[static_cast<std::size_t>(slot)];
   const TileName name{identity_, x, z};
   if (!found.known || found.name != name) {
+    last_ = nullptr;
     found.known = false;
     found.name = name;
     if (memory_.others == nullptr || !memory_.others->load(node_m, found)) {
@@ -75,6 +76,17 @@ const ReliefTile& Relief::fine_tile(std::int64_t x, std::int64_t z) {
 
 const ReliefTile& Relief::wide_tile(std::int64_t x, std::int64_t z) {
   return tile(memory_.wide, kWideWindow, kWideNode_m, x, z);
+}
+
+const ReliefTile& Relief::fine_tile_at(double x_m, double z_m) {
+  const double east_m = x_m - last_x_m_;
+  const double south_m = z_m - last_z_m_;
+  if (last_ != nullptr && east_m >= 0 && east_m < kFineTile_m && south_m >= 0 && south_m < kFineTile_m) return *last_;
+  const ReliefTile& found = fine_tile(tile_index(x_m, kFineTile_m), tile_index(z_m, kFineTile_m));
+  last_ = &found;
+  last_x_m_ = static_cast<double>(found.name.x) * kFineTile_m;
+  last_z_m_ = static_cast<double>(found.name.z) * kFineTile_m;
+  return found;
 }
 
 void Relief::fill(ReliefTile& tile, double node_m) {
@@ -105,13 +117,13 @@ void Relief::fill(ReliefTile& tile, double node_m) {
 }
 
 ReliefPoint Relief::at(double x_m, double z_m) {
-  const ReliefTile& t = fine_tile(tile_index(x_m, kFineTile_m), tile_index(z_m, kFineTile_m));
+  const ReliefTile& t = fine_tile_at(x_m, z_m);
   const CellPlace place = place_in(t.name, kFineTile_m, kFineNode_m, x_m, z_m);
   return {between(t.height_m, place), between(t.slope_x, place), between(t.slope_z, place)};
 }
 
 float Relief::height_at(double x_m, double z_m) {
-  const ReliefTile& t = fine_tile(tile_index(x_m, kFineTile_m), tile_index(z_m, kFineTile_m));
+  const ReliefTile& t = fine_tile_at(x_m, z_m);
   return between(t.height_m, place_in(t.name, kFineTile_m, kFineNode_m, x_m, z_m));
 }
 

@@ -69,11 +69,15 @@ class Relief {
   const ReliefTile& tile(std::vector<ReliefTile>& slots, std::int64_t window, double node_m, std::int64_t x,
                          std::int64_t z);
   const ReliefTile& wide_tile(std::int64_t x, std::int64_t z);
+  const ReliefTile& fine_tile_at(double x_m, double z_m);
   void fill(ReliefTile& tile, double node_m);
 
   HeightSource& source_;
   ReliefMemory& memory_;
   std::uint64_t identity_;
+  /// The fine tile that was read last, and its corner: most points lie where the one before did.
+  const ReliefTile* last_ = nullptr;
+  double last_x_m_ = 0, last_z_m_ = 0;
 };
 
 }  // namespace talus
