@@ -28,7 +28,7 @@ constexpr std::size_t kPlaces = 3;
 
 /// What one block holds; all of its own, so that blocks can be looked at in any order.
 struct BlockCount {
-  int shore = 0, cliff = 0, arches = 0, caves = 0, overhangs = 0, loose = 0;
+  int shore = 0, cliff = 0, arches = 0, caves = 0, overhangs = 0, loose = 0, loose_m3 = 0;
   std::vector<SurveyPlace> arch_places;
 };
 
@@ -76,7 +76,8 @@ void count_block(const WorldFunction& world, glm::i64vec2 middle, DensityBrick& 
   out.cliff = cliff_cells(block, kSlice, kCliffRise, kCliffReach);
   out.overhangs = count_overhangs(block, kOverhangGap);
   const auto loose = find_detached(block);
-  out.loose = loose.empty() ? 0 : loose.front();
+  out.loose = static_cast<int>(loose.size());
+  out.loose_m3 = loose.empty() ? 0 : loose.front();
   for (const Cavity& cavity : find_cavities(block, kSlice)) {
     out.caves += cavity.is_cave() ? 1 : 0;
     if (!cavity.is_arch()) continue;
@@ -114,7 +115,8 @@ CoastFigures search_coast(const WorldFunction& world, const SurveyGrid& grid, in
     overhangs += c.overhangs;
     out.arches += c.arches;
     out.caves += c.caves;
-    out.loose_m3 = std::max(out.loose_m3, c.loose);
+    out.loose += c.loose;
+    out.loose_m3 = std::max(out.loose_m3, c.loose_m3);
     out.places.insert(out.places.end(), c.arch_places.begin(), c.arch_places.end());
   }
   std::ranges::stable_sort(out.places, std::ranges::greater(), &SurveyPlace::worth);

@@ -15,7 +15,8 @@ struct CoastFigures {
   double cliff_share = 0;           ///< of it that rises by 10 m within 6 m
   int arches = 0, caves = 0;        ///< as rock_block.hpp defines them
   double overhang_m2_per_m = 0;     ///< ground under 2 m of air and rock above, a metre of shore
-  int loose_m3 = 0;                 ///< largest piece of rock that hangs on nothing
+  int loose = 0;                    ///< pieces of rock that hang on nothing
+  int loose_m3 = 0;                 ///< the largest of them
   std::vector<SurveyPlace> places;  ///< the arches with the most room, best first
 };
 

@@ -38,7 +38,8 @@ void print_table(const Manifest& manifest, const SurveyGrid& grid, const SurveyF
     line("arches and caves", fmt::format("{} and {}: {:.2f} and {:.2f} a km of shore, {:.2f} and {:.2f} a km of cliffs",
                                          c.arches, c.caves, per_km(c.arches, c.shore_km), per_km(c.caves, c.shore_km),
                                          per_km(c.arches, cliff_km), per_km(c.caves, cliff_km)));
-    line("loose rock", fmt::format("{} m3 at most", c.loose_m3));
+    line("loose rock", fmt::format("{} pieces, {:.2f} a km of shore, of {} m3 at most", c.loose,
+                                   per_km(c.loose, c.shore_km), c.loose_m3));
   }
   for (int bin = 0; bin < kHypsometricBins; ++bin) {
     const double share = f.bin_shares[static_cast<std::size_t>(bin)];
@@ -69,8 +70,8 @@ void print_json(const Manifest& manifest, const SurveyGrid& grid, const SurveyFi
       R"("drainage_km_per_km2":{:.4f},"coast_km":{:.2f},"coast_dimension":{:.4f},"overhang_share":{:.5f},"coast_overhangs_per_km":{:.2f},)",
       f.drainage_km_per_km2, f.coast_km, f.coast_dimension, f.overhang_share, f.coast_overhangs_per_km);
   fmt::print(
-      R"("shore_km":{:.3f},"cliff_share":{:.4f},"arches":{},"caves":{},"overhang_m2_per_m":{:.3f},"loose_m3":{},"places":[)",
-      c.shore_km, c.cliff_share, c.arches, c.caves, c.overhang_m2_per_m, c.loose_m3);
+      R"("shore_km":{:.3f},"cliff_share":{:.4f},"arches":{},"caves":{},"overhang_m2_per_m":{:.3f},"loose":{},"loose_m3":{},"places":[)",
+      c.shore_km, c.cliff_share, c.arches, c.caves, c.overhang_m2_per_m, c.loose, c.loose_m3);
   std::string_view comma;
   for (const SurveyPlace& place : places) {
     fmt::print(R"({}{{"kind":{},"x":{},"y":{:.1f},"z":{},"why":{}}})", comma, json_string(place.kind), place.place_m.x,

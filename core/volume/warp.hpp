@@ -4,7 +4,8 @@
 // height) costs a surface per voxel, and its first order breaks up at the rims of cliffs. Answer: a fan of columns up
 // the slope, read from fine tiles, as far as `reach` metres; at a voxel the surface is between the column's own and the
 // highest of the fan by hardness. That is never below the first, so rock is only added, and what is added is joined to
-// the slope it comes from at its own level: nothing floats.
+// the slope it comes from at its own level. What floats is crumbs: rock that juts to the relief between nodes while the
+// surface between them is lower.
 #pragma once
 
 #include "core/grid/column_grid.hpp"
