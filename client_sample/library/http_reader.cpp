@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include <http_parser.h>
+#include <llhttp.h>
 
 namespace talus::client {
 namespace {
@@ -13,10 +13,10 @@ constexpr std::size_t kFieldBytesMax = 64 * 1024;
 
 }  // namespace
 
-/// What http_parser has found so far.
+/// What llhttp has found so far.
 struct HttpReader::Parsing {
-  http_parser parser{};
-  http_parser_settings settings{};
+  llhttp_t parser{};
+  llhttp_settings_t settings{};
   HttpAnswer answer;
   std::string name;
   std::string value;
@@ -27,17 +27,17 @@ struct HttpReader::Parsing {
   bool is_kept_open = false;
 
   Parsing() {
-    http_parser_init(&parser, HTTP_RESPONSE);
-    parser.data = this;
-    http_parser_settings_init(&settings);
+    llhttp_settings_init(&settings);
     settings.on_header_field = on_name;
     settings.on_header_value = on_value;
     settings.on_headers_complete = on_head_end;
     settings.on_body = on_body;
     settings.on_message_complete = on_end;
+    llhttp_init(&parser, HTTP_RESPONSE, &settings);
+    parser.data = this;
   }
 
-  static Parsing& of(http_parser* parser) { return *static_cast<Parsing*>(parser->data); }
+  static Parsing& of(llhttp_t* parser) { return *static_cast<Parsing*>(parser->data); }
 
   void end_field() {
     if (!name.empty()) answer.fields[name] = value;
@@ -49,40 +49,39 @@ struct HttpReader::Parsing {
     field_bytes += text.size();
     is_too_large = is_too_large || field_bytes > kFieldBytesMax;
     into.append(text);
-    return is_too_large ? 1 : 0;
+    return is_too_large ? HPE_USER : HPE_OK;
   }
 
-  static int on_name(http_parser* parser, const char* at, std::size_t size) {
+  static int on_name(llhttp_t* parser, const char* at, std::size_t size) {
     Parsing& self = of(parser);
     if (self.in_value) self.end_field();
     std::string lower(at, size);
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return self.take_field(self.name, lower);
   }
-  static int on_value(http_parser* parser, const char* at, std::size_t size) {
+  static int on_value(llhttp_t* parser, const char* at, std::size_t size) {
     Parsing& self = of(parser);
     self.in_value = true;
     return self.take_field(self.value, {at, size});
   }
-  static int on_head_end(http_parser* parser) {
+  static int on_head_end(llhttp_t* parser) {
     Parsing& self = of(parser);
     self.end_field();
-    self.answer.status = parser->status_code;
-    return 0;
+    self.answer.status = static_cast<unsigned>(llhttp_get_status_code(parser));
+    return HPE_OK;
   }
-  static int on_body(http_parser* parser, const char* at, std::size_t size) {
+  static int on_body(llhttp_t* parser, const char* at, std::size_t size) {
     Parsing& self = of(parser);
     self.is_too_large = size > kHttpBodyBytesMax - self.answer.body.size();
-    if (self.is_too_large) return 1;
+    if (self.is_too_large) return HPE_USER;
     self.answer.body.append(at, size);
-    return 0;
+    return HPE_OK;
   }
-  static int on_end(http_parser* parser) {
+  static int on_end(llhttp_t* parser) {
     Parsing& self = of(parser);
     self.is_whole = true;
-    self.is_kept_open = http_should_keep_alive(parser) != 0;
-    http_parser_pause(parser, 1);
-    return 0;
+    self.is_kept_open = llhttp_should_keep_alive(parser) != 0;
+    return HPE_PAUSED;
   }
 };
 
@@ -92,10 +91,12 @@ HttpReader::~HttpReader() = default;
 HttpReader::State HttpReader::feed(std::span<const char> bytes) {
   Parsing& p = *parsing_;
   if (p.is_whole) return State::kBroken;
-  const std::size_t used = http_parser_execute(&p.parser, &p.settings, bytes.data(), bytes.size());
+  const llhttp_errno_t error =
+      bytes.empty() ? llhttp_finish(&p.parser) : llhttp_execute(&p.parser, bytes.data(), bytes.size());
   if (p.is_too_large) return State::kTooLarge;
-  if (p.is_whole) return used == bytes.size() ? State::kWhole : State::kBroken;
-  return HTTP_PARSER_ERRNO(&p.parser) == HPE_OK ? State::kMore : State::kBroken;
+  if (!p.is_whole) return error == HPE_OK ? State::kMore : State::kBroken;
+  const bool is_all = bytes.empty() || llhttp_get_error_pos(&p.parser) == bytes.data() + bytes.size();
+  return is_all ? State::kWhole : State::kBroken;
 }
 
 HttpAnswer HttpReader::take() {

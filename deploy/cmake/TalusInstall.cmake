@@ -15,7 +15,7 @@ foreach(room IN LISTS rooms)
   target_include_directories(${room} SYSTEM INTERFACE "$<INSTALL_INTERFACE:${headers}>")
 endforeach()
 # Static libraries name what they were compiled with; of ours that is switches, which no consumer inherits.
-install(TARGETS ${rooms} talus_compile talus_asio talus_http_parser EXPORT talus ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS ${rooms} talus_compile talus_asio talus_llhttp EXPORT talus ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT talus NAMESPACE talus:: DESTINATION "${package}" FILE talus_targets.cmake)
 install(DIRECTORY core protocol DESTINATION "${headers}" FILES_MATCHING PATTERN "*.hpp" PATTERN schema EXCLUDE)
 install(DIRECTORY client_sample/library DESTINATION "${headers}/client_sample" FILES_MATCHING PATTERN "*.hpp")

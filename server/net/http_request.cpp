@@ -1,10 +1,9 @@
 #include "server/net/http_request.hpp"
 
-#include <http_parser.h>
+#include <llhttp.h>
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
 
 #include "server/net/url_text.hpp"
@@ -26,8 +25,8 @@ constexpr HttpFault kVersion{400, "malformed_request", "the version must be HTTP
 constexpr HttpFault kFieldName{400, "malformed_request", "a header name is not a token directly before its colon"};
 constexpr HttpFault kHost{400, "malformed_request", "exactly one Host field is needed, of a host and perhaps a port"};
 constexpr HttpFault kTarget{400, "malformed_request", "the request target is not a path"};
-constexpr HttpFault kLengths{400, "malformed_request", "Content-Length is not one whole number"};
-constexpr HttpFault kBothLengths{400, "malformed_request", "Content-Length and Transfer-Encoding together"};
+constexpr HttpFault kLength{400, "malformed_request", "Content-Length is not a whole number"};
+constexpr HttpFault kLengths{400, "malformed_request", "several Content-Length, or one beside Transfer-Encoding"};
 constexpr HttpFault kCoding{400, "malformed_request", "Transfer-Encoding does not end in chunked"};
 constexpr HttpFault kLargeBody{413, "body_too_large", "the body is too large"};
 
@@ -35,29 +34,20 @@ char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// What a byte may be part of.
-enum CharKind : std::uint8_t { kTokenChar = 1, kHostChar = 2, kTargetChar = 4 };
-
-constexpr std::array<std::uint8_t, 256> kCharKinds = [] {
-  constexpr std::string_view kTokenMarks = "!#$%&'*+-.^_`|~";
-  // RFC 3986, 3.2.2 and 3.2.3, without a user; what another server would make of anything else is not known.
-  constexpr std::string_view kHostMarks = "-._~%!$&'()*+,;=:[]";
-  std::array<std::uint8_t, 256> kinds{};
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
+/// RFC 3986, 3.2.2 and 3.2.3, without a user; what another server would make of anything else is not known.
+constexpr std::array<bool, 256> kIsHostChar = [] {
+  constexpr std::string_view kMarks = "-._~%!$&'()*+,;=:[]";
+  std::array<bool, 256> is_host{};
+  for (std::size_t i = 0; i < is_host.size(); ++i) {
     const char c = static_cast<char>(i);
-    const bool is_letter_or_digit = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    const bool is_token = is_letter_or_digit || kTokenMarks.find(c) != std::string_view::npos;
-    const bool is_host = is_letter_or_digit || kHostMarks.find(c) != std::string_view::npos;
-    const bool is_target = i > 0x20 && i < 0x7F && c != '#';
-    kinds[i] = static_cast<std::uint8_t>((is_token ? kTokenChar : 0) | (is_host ? kHostChar : 0) |
-                                         (is_target ? kTargetChar : 0));
+    is_host[i] = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                 kMarks.find(c) != std::string_view::npos;
   }
-  return kinds;
+  return is_host;
 }();
 
-bool is_all(CharKind kind, std::string_view text) {
-  return std::all_of(text.begin(), text.end(),
-                     [kind](char c) { return (kCharKinds[static_cast<unsigned char>(c)] & kind) != 0; });
+bool is_host(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return kIsHostChar[static_cast<unsigned char>(c)]; });
 }
 
 // Eight bytes at a time. A result has the highest bit of each byte that is meant; of the bytes behind the first one
@@ -110,17 +100,18 @@ HttpMethod method_of(unsigned method) {
   }
 }
 
-/// Splits a target in origin form, absolute form or `*` (which becomes an empty path).
+/// Splits a target in origin form, absolute form or `*` (which becomes an empty path). llhttp lets printable ASCII
+/// pass.
 bool split_target(std::string_view target, HttpRequest& out) {
   constexpr std::string_view kScheme = "http://";
   if (target.size() > kScheme.size() && equal_ignoring_case(target.substr(0, kScheme.size()), kScheme)) {
     const std::size_t slash = target.find('/', kScheme.size());
     if (slash == std::string_view::npos || slash == kScheme.size()) return false;
-    if (!is_all(kHostChar, target.substr(kScheme.size(), slash - kScheme.size()))) return false;
+    if (!is_host(target.substr(kScheme.size(), slash - kScheme.size()))) return false;
     target.remove_prefix(slash);
   }
   if (target == "*") return out.method == HttpMethod::kOptions;
-  if (target.empty() || target.front() != '/' || !is_all(kTargetChar, target)) return false;
+  if (!target.starts_with('/') || target.contains('#')) return false;
   const std::size_t mark = target.find('?');
   out.path = target.substr(0, mark);
   if (mark != std::string_view::npos) out.query = target.substr(mark + 1);
@@ -133,87 +124,93 @@ bool ends_chunked(std::string_view codings) {
   return equal_ignoring_case(trimmed(comma == std::string_view::npos ? codings : codings.substr(comma + 1)), "chunked");
 }
 
-/// Fields that decide where a request ends and whom it is for: each has one reading or the request has none.
-std::optional<HttpFault> check_fields(HttpRequest& request, const NetLimits& limits) {
+/// Fields that decide where a request ends and whom it is for: each has one reading or the request has none. llhttp
+/// knows most of it too, but takes an empty Transfer-Encoding for none.
+std::optional<HttpFault> check_fields(HttpRequest& request, std::uint64_t body_bytes, const NetLimits& limits) {
   std::size_t hosts = 0;
-  std::optional<std::uint64_t> length;
+  std::size_t lengths = 0;
   std::optional<bool> is_chunked;
   for (const HttpField& field : request.fields) {
-    if (!is_all(kTokenChar, field.name)) return kFieldName;
     if (equal_ignoring_case(field.name, "host")) {
-      if (!is_all(kHostChar, field.value)) return kHost;
+      if (!is_host(field.value)) return kHost;
       ++hosts;
     }
+    if (equal_ignoring_case(field.name, "content-length")) ++lengths;
     if (equal_ignoring_case(field.name, "transfer-encoding")) is_chunked = ends_chunked(field.value);
-    if (!equal_ignoring_case(field.name, "content-length")) continue;
-    std::uint64_t value = 0;
-    const char* end = field.value.data() + field.value.size();
-    const auto [at, error] = std::from_chars(field.value.data(), end, value);
-    if (error != std::errc{} || at != end || length) return kLengths;
-    length = value;
   }
   if (hosts > 1 || (hosts == 0 && !request.is_http_1_0)) return kHost;
-  if (length && is_chunked) return kBothLengths;
+  if (lengths > (is_chunked ? 0U : 1U)) return kLengths;
   if (is_chunked && !*is_chunked) return kCoding;
-  if (length && *length > limits.body_bytes) return kLargeBody;
-  request.has_body = is_chunked || length.value_or(0) > 0;
+  if (body_bytes > limits.body_bytes) return kLargeBody;
+  request.has_body = is_chunked || body_bytes > 0;
   return std::nullopt;
 }
 
-/// What http_parser tells of one head. A name, a value or the target may come in pieces, always of one stretch of
-/// bytes.
+/// What llhttp tells of one head. A name, a value or the target may come in pieces, always of one stretch of bytes.
 struct Told {
   HttpRequest& request;
   std::string_view target;
   HttpField field;
-  bool is_complete = false;
 
-  static Told& by(http_parser* parser) { return *static_cast<Told*>(parser->data); }
+  static Told& by(llhttp_t* parser) { return *static_cast<Told*>(parser->data); }
   static void extend(std::string_view& view, const char* at, std::size_t size) {
     if (view.empty()) view = {at, size};
     view = {view.data(), static_cast<std::size_t>(at + size - view.data())};
   }
-  /// False without room for it.
-  bool end_field() {
-    if (field.name.empty()) return true;
-    if (request.fields.size() == HttpFields::kMax) return false;
-    request.fields.push({field.name, trimmed(field.value)});
-    field = {};
-    return true;
-  }
 };
 
-const http_parser_settings& head_callbacks() {
-  static const http_parser_settings kCallbacks = [] {
-    http_parser_settings callbacks;
-    http_parser_settings_init(&callbacks);
-    callbacks.on_url = [](http_parser* p, const char* at, std::size_t size) {
+const llhttp_settings_t& head_callbacks() {
+  static const llhttp_settings_t kCallbacks = [] {
+    llhttp_settings_t callbacks;
+    llhttp_settings_init(&callbacks);
+    callbacks.on_url = [](llhttp_t* p, const char* at, std::size_t size) {
       Told::extend(Told::by(p).target, at, size);
       return 0;
     };
-    callbacks.on_header_field = [](http_parser* p, const char* at, std::size_t size) {
-      Told& told = Told::by(p);
-      if (told.field.value.data() != nullptr && !told.end_field()) return 1;
-      Told::extend(told.field.name, at, size);
+    callbacks.on_header_field = [](llhttp_t* p, const char* at, std::size_t size) {
+      Told::extend(Told::by(p).field.name, at, size);
       return 0;
     };
-    callbacks.on_header_value = [](http_parser* p, const char* at, std::size_t size) {
+    callbacks.on_header_value = [](llhttp_t* p, const char* at, std::size_t size) {
       Told::extend(Told::by(p).field.value, at, size);
       return 0;
     };
-    callbacks.on_headers_complete = [](http_parser* p) {
-      Told::by(p).is_complete = Told::by(p).end_field();
-      return 0;
+    callbacks.on_header_value_complete = [](llhttp_t* p) {
+      Told& told = Told::by(p);
+      if (told.field.name.empty() || told.request.fields.size() == HttpFields::kMax) return int{HPE_USER};
+      told.request.fields.push({told.field.name, trimmed(told.field.value)});
+      told.field = {};
+      return int{HPE_OK};
     };
+    callbacks.on_headers_complete = [](llhttp_t*) { return int{HPE_PAUSED}; };
     return callbacks;
   }();
   return kCallbacks;
 }
 
+const HttpFault& fault_of(llhttp_errno_t error) {
+  switch (error) {
+    case HPE_INVALID_VERSION:
+      return kVersion;
+    case HPE_INVALID_HEADER_TOKEN:
+    case HPE_CB_HEADER_VALUE_COMPLETE:
+      return kFieldName;
+    case HPE_INVALID_CONTENT_LENGTH:
+      return kLength;
+    case HPE_UNEXPECTED_CONTENT_LENGTH:
+      return kLengths;
+    case HPE_INVALID_TRANSFER_ENCODING:
+      return kCoding;
+    default:
+      return kGrammar;
+  }
+}
+
 }  // namespace
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::expected<std::optional<std::size_t>, HttpFault> HeadScanner::scan(std::string_view bytes) {
@@ -267,24 +264,22 @@ bool HttpRequest::lists(std::string_view name, std::string_view token) const {
 
 std::optional<HttpFault> parse_head_into(std::string_view head, const NetLimits& limits, HttpRequest& request) {
   Told told{request, {}, {}};
-  http_parser parser;
-  http_parser_init(&parser, HTTP_REQUEST);
-  parser.allow_chunked_length = 1;  // refused below, with a reason of its own
+  llhttp_t parser;
+  llhttp_init(&parser, HTTP_REQUEST, &head_callbacks());
   parser.data = &told;
-  const std::size_t taken = http_parser_execute(&parser, &head_callbacks(), head.data(), head.size());
-  // An upgrade ends the parser's work on the last byte of the head; a declared body lies behind it.
-  if (!told.is_complete || HTTP_PARSER_ERRNO(&parser) != HPE_OK || (taken != head.size() && parser.upgrade == 0)) {
-    return kGrammar;
-  }
+  const llhttp_errno_t error = llhttp_execute(&parser, head.data(), head.size());
+  if (error != HPE_PAUSED) return fault_of(error);
+  if (llhttp_get_error_pos(&parser) != head.data() + head.size()) return kGrammar;
+  if (llhttp_get_http_major(&parser) != 1) return kVersion;
   // It forgives runs of spaces, behind which another server may see another target.
-  const std::string_view line = head.substr(0, head.find('\r'));
-  if (std::ranges::count(line, ' ') != 2) return kGrammar;
-  if (parser.http_major != 1 || parser.http_minor > 1) return kVersion;
-  request.method = method_of(parser.method);
-  request.is_http_1_0 = parser.http_minor == 0;
-  request.is_keep_alive =
-      request.is_http_1_0 ? request.lists("connection", "keep-alive") : !request.lists("connection", "close");
-  if (const auto fault = check_fields(request, limits)) return fault;
+  constexpr std::string_view kBehindTarget = " HTTP/1.1\r\n";
+  const auto target_at = static_cast<std::size_t>(told.target.data() - head.data());
+  const auto line_bytes = target_at + told.target.size() + kBehindTarget.size();
+  if (head[target_at - 2] == ' ' || head[line_bytes - 1] != '\n') return kGrammar;
+  request.method = method_of(llhttp_get_method(&parser));
+  request.is_http_1_0 = llhttp_get_http_minor(&parser) == 0;
+  request.is_keep_alive = llhttp_should_keep_alive(&parser) != 0;
+  if (const auto fault = check_fields(request, parser.content_length, limits)) return fault;
   if (!split_target(told.target, request)) return kTarget;
   return std::nullopt;
 }

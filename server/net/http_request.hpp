@@ -1,7 +1,7 @@
 // One HTTP/1.1 request head: found in the bytes of a connection, then parsed. Pure; views point into those bytes.
 //
-// http_parser reads it. Stricter than that, since smuggling lives on what is forgiven: bare line feeds, folded lines,
-// space before a colon, several hosts, lengths that disagree are all refused.
+// llhttp reads it. Stricter than that, since smuggling lives on what is forgiven: bare line feeds, folded lines,
+// runs of spaces, several hosts are refused too.
 #pragma once
 
 #include <array>

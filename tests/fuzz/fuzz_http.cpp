@@ -36,6 +36,7 @@ int fuzz_one(const std::uint8_t* data, std::size_t size) {
   std::size_t hosts = 0;
   for (const auto& [name, value] : request->fields) {
     TALUS_CHECK(is_inside(name) && is_inside(value));
+    TALUS_CHECK(!name.empty() && name.find_first_of(" \t\"(),/:;<=>?@[\\]{}\x7F") == std::string_view::npos);
     TALUS_CHECK(value.find_first_of("\r\n") == std::string_view::npos);
     if (equal_ignoring_case(name, "host")) ++hosts;
   }

@@ -85,7 +85,7 @@ const std::vector<Library>& libraries() {
       {"openssl/", {"protocol", "server/net", "server/storage"}, 0},
       {"jwt.h", {"server/net", "client_sample/cli"}, 2},
       {"sqlite3.h", {"server/storage"}, 0},
-      {"http_parser.h", {"server/net", "client_sample/library"}, 0},
+      {"llhttp.h", {"server/net", "client_sample/library"}, 0},
       {"wslay/", {"server/net", "client_sample/library"}, 0},
       {"hwy/", {"core"}, 0},
   };
