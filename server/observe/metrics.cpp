@@ -3,6 +3,8 @@
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
+#include <algorithm>
+#include <atomic>
 #include <utility>
 
 namespace talus::server {
@@ -109,7 +111,36 @@ prometheus::ClientMetric::Histogram snapshot(const LatencyHistogram& from) {
   return out;
 }
 
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
 }  // namespace
+
+Metrics::Metrics() : number_(next_number()) {}
+
+Metrics::Page& Metrics::page_of_this_thread() {
+  const std::lock_guard lock(pages_mutex_);
+  const auto owner = std::this_thread::get_id();
+  const auto known = std::ranges::find_if(pages_, [&](const auto& page) { return page->owner == owner; });
+  if (known != pages_.end()) return **known;
+  pages_.push_back(std::make_unique<Page>());
+  pages_.back()->owner = owner;
+  return *pages_.back();
+}
+
+std::uint64_t Metrics::value(Count count) const {
+  const std::lock_guard lock(pages_mutex_);
+  std::uint64_t sum = 0;
+  for (const auto& page : pages_) sum += page->counts[static_cast<std::size_t>(count)].value();
+  return sum;
+}
+
+void Metrics::add_up(Hop hop, LatencyHistogram& sum) const {
+  const std::lock_guard lock(pages_mutex_);
+  for (const auto& page : pages_) sum.add(page->hops[static_cast<std::size_t>(hop)]);
+}
 
 void Metrics::watch(ReadingInfo info, Reading reading) {
   const std::lock_guard lock(watched_mutex_);
@@ -134,7 +165,9 @@ std::string Metrics::text() const {
   for (std::size_t i = 0; i < kHops.size(); ++i) {
     prometheus::ClientMetric& metric = hops.metric.emplace_back();
     metric.label.push_back({"hop", kHops[i]});
-    metric.histogram = snapshot(hops_[i]);
+    LatencyHistogram sum;
+    add_up(static_cast<Hop>(i), sum);
+    metric.histogram = snapshot(sum);
   }
   {
     const std::lock_guard lock(watched_mutex_);

@@ -1,17 +1,19 @@
 // Everything the server counts, in one table: a limit without a number here cannot be seen to work.
 //
-// Counters and histograms are fixed arrays of atomics, so counting costs one relaxed add and no look-up. Readings are
-// functions, asked when the metrics are read. Any thread.
+// Each thread counts on a page of its own, so that counting costs one plain add: no look-up, no locked instruction, no
+// line that goes from core to core. Who reads adds the pages up. Readings are functions, asked when the metrics are
+// read. Any thread.
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "server/observe/latency_histogram.hpp"
@@ -128,14 +130,13 @@ struct ReadingInfo {
 
 class Metrics {
  public:
-  void add(Count count, std::uint64_t by = 1) {
-    counts_[static_cast<std::size_t>(count)].fetch_add(by, std::memory_order_relaxed);
-  }
-  std::uint64_t value(Count count) const {
-    return counts_[static_cast<std::size_t>(count)].load(std::memory_order_relaxed);
-  }
-  void record(Hop hop, std::chrono::nanoseconds took) { hops_[static_cast<std::size_t>(hop)].record(took); }
-  const LatencyHistogram& hop(Hop hop) const { return hops_[static_cast<std::size_t>(hop)]; }
+  Metrics();
+  Metrics(const Metrics&) = delete;
+  Metrics& operator=(const Metrics&) = delete;
+
+  void add(Count count, std::uint64_t by = 1) { page().counts[static_cast<std::size_t>(count)].add(by); }
+  std::uint64_t value(Count count) const;
+  void record(Hop hop, std::chrono::nanoseconds took) { page().hops[static_cast<std::size_t>(hop)].record(took); }
 
   /// `reading` is called whenever the metrics are read, on the reader's thread, and must stay callable until then.
   void watch(ReadingInfo info, Reading reading);
@@ -148,8 +149,29 @@ class Metrics {
     ReadingInfo info;
     Reading reading;
   };
-  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kEnd)> counts_{};
-  std::array<LatencyHistogram, static_cast<std::size_t>(Hop::kEnd)> hops_;
+  struct Page {
+    std::array<OwnCount, static_cast<std::size_t>(Count::kEnd)> counts;
+    std::array<LatencyHistogram, static_cast<std::size_t>(Hop::kEnd)> hops;
+    std::thread::id owner;  ///< a later thread of the same id goes on with it
+  };
+  /// Which page the present thread counts on, of which metrics.
+  struct Mine {
+    std::uint64_t metrics;  ///< their number_; 0: none yet
+    Page* page;
+  };
+
+  Page& page() {
+    if (mine_.metrics != number_) mine_ = {number_, &page_of_this_thread()};
+    return *mine_.page;
+  }
+  Page& page_of_this_thread();
+  void add_up(Hop hop, LatencyHistogram& sum) const;
+
+  static inline constinit thread_local Mine mine_{};
+
+  const std::uint64_t number_;  ///< no other metrics of this process have it
+  mutable std::mutex pages_mutex_;
+  std::vector<std::unique_ptr<Page>> pages_;
   mutable std::mutex watched_mutex_;
   std::vector<Watched> watched_;
 };

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "server/observe/json.hpp"
 #include "server/observe/log.hpp"
@@ -55,6 +57,30 @@ TEST(Metrics, WritesEveryCounterHopAndReadingAsPrometheusReadsThem) {
       "# TYPE talus_asked_total counter\ntalus_asked_total{by=\"mice\"} 3\ntalus_asked_total{by=\"men\"} 4";
   EXPECT_NE(text.find(asked), std::string::npos) << "one family, both of its readings";
   EXPECT_EQ(text.find("_total{} "), std::string::npos);
+}
+
+TEST(Metrics, AddUpWhatThreadsHaveCountedThatGoOnOrAreGone) {
+  Metrics metrics;
+  Metrics others;
+  constexpr int kThreads = 4;
+  constexpr std::uint64_t kTimes = 10'000;
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < kThreads; ++i) {
+      threads.emplace_back([&] {
+        for (std::uint64_t n = 0; n < kTimes; ++n) {
+          metrics.add(Count::kChunkHit);
+          metrics.record(Hop::kLoad, microseconds(1));
+          if (n % 100 == 0) others.add(Count::kChunkHit, 2);
+        }
+      });
+    }
+    while (metrics.value(Count::kChunkHit) == 0) std::this_thread::yield();
+  }
+  EXPECT_EQ(metrics.value(Count::kChunkHit), 2 * kThreads * kTimes);
+  EXPECT_EQ(others.value(Count::kChunkHit), 2 * kThreads * kTimes / 50);
+  const std::string count = "talus_hop_seconds_count{hop=\"load\"} " + std::to_string(2 * kThreads * kTimes) + "\n";
+  EXPECT_NE(metrics.text().find(count), std::string::npos);
 }
 
 TEST(ProcessReadings, SayWhatTheProcessTakes) {
