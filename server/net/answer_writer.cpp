@@ -5,7 +5,8 @@
 
 namespace talus::server {
 
-AnswerWriter::State AnswerWriter::begin(HttpAnswer&& answer, const HeadOptions& options, bool is_head_only) {
+AnswerWriter::State AnswerWriter::begin(HttpAnswer&& answer, const HeadOptions& options, bool is_head_only,
+                                        Instant now) {
   answer_ = std::move(answer);
   net_.metrics.add(count_of(answer_.status));
   write_head(answer_, options, head_);
@@ -13,7 +14,7 @@ AnswerWriter::State AnswerWriter::begin(HttpAnswer&& answer, const HeadOptions& 
   const bool has_body = !is_head_only && answer_.status != 204 && answer_.status != 304;
   if (has_body) net_.metrics.add(Count::kHttpBodyBytes, body.size());
   unsent_ = {asio::buffer(head_), has_body ? asio::const_buffer(body.data(), body.size()) : asio::const_buffer{}};
-  start_ = net_.clock.now();
+  start_ = now;
   return write_some();
 }
 

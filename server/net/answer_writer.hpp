@@ -19,8 +19,8 @@ class AnswerWriter {
   AnswerWriter(NetContext& net, Channel& channel) : net_(net), channel_(channel) {}
 
   enum class State : std::uint8_t { kSent, kUnsent, kFailed };
-  /// Writes as much as is taken at once. Of a HEAD's answer only the head.
-  State begin(HttpAnswer&& answer, const HeadOptions& options, bool is_head_only);
+  /// Writes as much as is taken at once. Of a HEAD's answer only the head. It is `now`.
+  State begin(HttpAnswer&& answer, const HeadOptions& options, bool is_head_only, Instant now);
   /// Bytes that are a head already.
   State begin_head(std::string head);
   /// After kUnsent: writes what is left. False when the channel has failed.

@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
-#include <sys/socket.h>
 #include <sys/uio.h>
 
 #include <algorithm>
@@ -91,7 +90,7 @@ Channel::Read Channel::read_now(std::span<std::byte> into) {
 
 Channel::Read Channel::receive(std::span<std::byte> into) {
   for (;;) {
-    const ssize_t got = ::recv(socket_.number(), into.data(), into.size(), 0);
+    const ssize_t got = receive_some(socket_.number(), into);
     if (got > 0) {
       const auto bytes = static_cast<std::size_t>(got);
       may_read_ = bytes == into.size() || !is_short_read_last_;
@@ -162,7 +161,7 @@ std::size_t Channel::write_clear(std::span<const asio::const_buffer> buffers, as
     if (buffer.size() != 0) parts[message.msg_iovlen++] = {const_cast<void*>(buffer.data()), buffer.size()};
   }
   for (;;) {
-    const ssize_t sent = ::sendmsg(socket_.number(), &message, MSG_NOSIGNAL);
+    const ssize_t sent = send_some(socket_.number(), message);
     if (sent >= 0) return static_cast<std::size_t>(sent);
     if (errno == EINTR) continue;
     if (would_block(errno)) may_write_ = false;

@@ -80,7 +80,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   bool answer_now(Route& route, Instant now);
   Awaitable<void> refuse();
   Awaitable<void> upgrade(const StreamRoute& route, std::string_view head);
-  void send(HttpAnswer&& answer);
+  void send(HttpAnswer&& answer, Instant now);
   void note(AnswerWriter::State state);
   Awaitable<void> send_rest();
   Awaitable<void> linger();
@@ -223,15 +223,15 @@ void HttpConnection::begin_request(const HttpRequest& request) {
 bool HttpConnection::answer_now(Route& route, Instant now) {
   if (auto* at_once = std::get_if<AnswerRoute>(&route)) {
     if (at_once->token_fault) net_.metrics.add(count_of(*at_once->token_fault));
-    send(std::move(at_once->answer));
+    send(std::move(at_once->answer), now);
   } else if (const auto* chunk = std::get_if<ChunkRoute>(&route)) {
     PayloadRef payload = net_.chunks.at_once(chunk->name, now);
     if (payload == nullptr) return false;
     net_.metrics.add(Count::kHttpChunkInMemory);
     const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name);
-    send(chunk_answer(std::move(payload), etag, chunk->name.format));
+    send(chunk_answer(std::move(payload), etag, chunk->name.format), now);
   } else if (std::holds_alternative<MetricsRoute>(route)) {
-    send(metrics_answer(net_.metrics));
+    send(metrics_answer(net_.metrics), now);
   } else {
     return false;
   }
@@ -258,7 +258,7 @@ Awaitable<void> HttpConnection::serve(std::string_view head) {
   if (left_ == Left::kMaking) {
     if (const auto* stream = std::get_if<StreamRoute>(&route_)) co_return co_await upgrade(*stream, head);
     HttpAnswer answer = co_await answers_.make(std::move(route_), client_);
-    send(std::move(answer));
+    send(std::move(answer), net_.clock.now());
   }
   co_await send_rest();
   if (is_serving_ && has_body_) co_await linger();
@@ -280,7 +280,7 @@ Awaitable<void> HttpConnection::refuse() {
   is_keep_alive_ = false;
   is_head_only_ = false;
   path_ = {};
-  send(error_answer(fault_.status, fault_.code, fault_.message));
+  send(error_answer(fault_.status, fault_.code, fault_.message), net_.clock.now());
   co_await send_rest();
   if (is_serving_) co_await linger();
   is_serving_ = false;
@@ -289,7 +289,7 @@ Awaitable<void> HttpConnection::refuse() {
 Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_view head) {
   auto handshake = stream_handshake(net_, pass_, head, request_id_);
   if (!handshake) {
-    send(std::move(handshake.error()));
+    send(std::move(handshake.error()), net_.clock.now());
     co_await send_rest();
     co_return;
   }
@@ -310,7 +310,7 @@ Awaitable<void> HttpConnection::upgrade(const StreamRoute& route, std::string_vi
 }
 
 /// Sends `answer` as the present request's; what is not taken at once is left.
-void HttpConnection::send(HttpAnswer&& answer) {
+void HttpConnection::send(HttpAnswer&& answer, Instant now) {
   if (!present_->tokens.empty() && answer.cache_control == kImmutable) answer.cache_control = kImmutablePrivate;
   const HeadOptions options{sweeper().http_date(),     is_keep_alive_, is_http_1_0_, allow_origin_,
                             !policy_->origins.empty(), request_id_};
@@ -322,7 +322,7 @@ void HttpConnection::send(HttpAnswer&& answer) {
          {"status", std::int64_t{answer.status}},
          {"body_bytes", std::uint64_t{answer.body().size()}}});
   }
-  note(writer_.begin(std::move(answer), options, is_head_only_));
+  note(writer_.begin(std::move(answer), options, is_head_only_, now));
 }
 
 void HttpConnection::note(AnswerWriter::State state) {

@@ -14,8 +14,11 @@
 #include <asio/steady_timer.hpp>
 #include <asio/use_awaitable.hpp>
 
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstddef>
+#include <span>
 #include <utility>
 
 namespace talus::server {
@@ -63,6 +66,11 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// recv(2) and sendmsg(2) with MSG_NOSIGNAL. Those of glibc are points where a thread may be cancelled, at two locked
+/// exchanges a call once there are several threads; nobody cancels threads here.
+ssize_t receive_some(int descriptor, std::span<std::byte> into);
+ssize_t send_some(int descriptor, const msghdr& message);
 
 /// Options of every accepted socket; failures are left to the first read.
 void set_socket_options(int descriptor);

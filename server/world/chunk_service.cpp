@@ -49,13 +49,15 @@ ChunkService::ChunkService(MemoryCache& cache, StoredChunks& stored, JobPool& po
     : cache_(cache), stored_(stored), pool_(pool), builder_(builder), clock_(clock), metrics_(metrics) {}
 
 ChunkService::Answer ChunkService::request(const PayloadName& name, const Asker& asker, Done done) {
-  if (PayloadRef payload = at_once(name, clock_.now())) return payload;
+  Instant now = clock_.now();
+  if (PayloadRef payload = at_once(name, now)) return payload;
   return make(name, asker, std::move(done));
 }
 
-PayloadRef ChunkService::at_once(const PayloadName& name, Instant start) {
+PayloadRef ChunkService::at_once(const PayloadName& name, Instant& now) {
   PayloadRef payload = cache_.load(name);
-  const Duration took = clock_.now() - start;
+  const Instant start = std::exchange(now, clock_.now());
+  const Duration took = now - start;
   metrics_.record(Hop::kLoad, took);
   if (payload != nullptr) {
     metrics_.add(Count::kChunkHit);
@@ -64,8 +66,9 @@ PayloadRef ChunkService::at_once(const PayloadName& name, Instant start) {
   }
   payload = ruled_out(name);
   if (payload == nullptr) return nullptr;
+  now = clock_.now();
   metrics_.add(Count::kChunkRuledOut);
-  metrics_.record(Hop::kRequest, clock_.now() - start);
+  metrics_.record(Hop::kRequest, now - start);
   return payload;
 }
 
