@@ -85,7 +85,7 @@ HWY_INLINE FaultShape<V> shape_of(FaultClass kind, const Jet<V>& s) {
 /// The ground without what the fault raises: between two continents or two sea floors a slow passage; between land and
 /// sea a shelf that rises from the fault through the shore to the plain, and a slope that falls to the sea floor.
 template <class V>
-HWY_INLINE Jet<V> base_of(const PlateFault& fault, const CoastTerms& coast, const Jet<V>& s) {
+HWY_INLINE Jet<V> base_of(const PlateFault& fault, const ShelfTerms& coast, const Jet<V>& s) {
   const hn::DFromV<V> d;
   const FaultClass kind = fault.features.kind;
   if (kind != FaultClass::kSubduction && kind != FaultClass::kPassive) {

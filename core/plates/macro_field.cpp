@@ -73,7 +73,7 @@ MacroField::MacroField(const PlateControls& plates, const MacroControls& macro)
 
 void MacroField::sum_plates(const ColumnGrid& nodes, MacroScratch& scratch, const Nodes& out) const {
   const MacroControls& m = plates_.macro();
-  const CoastTerms coast{static_cast<float>(1.0 / m.shelf_m), static_cast<float>(m.continental_slope_m),
+  const ShelfTerms coast{static_cast<float>(1.0 / m.shelf_m), static_cast<float>(m.continental_slope_m),
                          static_cast<float>(m.shelf_depth_m)};
   const std::size_t stride = row_stride(nodes);
   for (int k = 0; k < nodes.depth; k += kGroupEdge) {

@@ -95,7 +95,7 @@ struct FaultValues {
   std::array<J, kMacroChannels> channel;
 };
 
-HWY_INLINE FaultValues fault_values(D d, const PlateFault& fault, const float* curves, const CoastTerms& coast, V x,
+HWY_INLINE FaultValues fault_values(D d, const PlateFault& fault, const float* curves, const ShelfTerms& coast, V x,
                                     V z) {
   const J from_x{hn::Sub(x, hn::Set(d, fault.start_x)), hn::Set(d, 1.0f), hn::Zero(d)};
   const J from_z{hn::Sub(z, hn::Set(d, fault.start_z)), hn::Zero(d), hn::Set(d, 1.0f)};
@@ -128,7 +128,7 @@ HWY_INLINE FaultValues fault_values(D d, const PlateFault& fault, const float* c
   return out;
 }
 
-void add_plate_target(const PlacedPlate& placed, const CoastTerms& coast, const NodeGroup& group, GroupSums& sums) {
+void add_plate_target(const PlacedPlate& placed, const ShelfTerms& coast, const NodeGroup& group, GroupSums& sums) {
   const D d;
   const Plate& plate = *placed.plate;
   for (std::size_t i = 0; i < kGroupNodes; i += hn::Lanes(d)) {
@@ -192,7 +192,7 @@ bool can_share(const PlacedPlate& placed, const glm::dvec2& low, const glm::dvec
   return true;
 }
 
-void add_plate(const PlacedPlate& placed, const CoastTerms& coast, const NodeGroup& group, GroupSums& sums) {
+void add_plate(const PlacedPlate& placed, const ShelfTerms& coast, const NodeGroup& group, GroupSums& sums) {
   HWY_DYNAMIC_DISPATCH(add_plate_target)(placed, coast, group, sums);
 }
 

@@ -39,7 +39,7 @@ struct GroupSums {
   std::array<GroupJet, kMacroChannels> channel;
 };
 
-struct CoastTerms {
+struct ShelfTerms {
   float per_shelf = 0;  ///< 1 / (shelf's width)
   float slope_m = 0;
   float shelf_depth_m = 0;
@@ -59,7 +59,7 @@ bool can_share(const PlacedPlate& placed, const glm::dvec2& low, const glm::dvec
 /// Share: the product of logistics of the distances inside each fault; never 0 for all plates at once, not even where a
 /// curve bends around a vertex. Value: the mean over the plate's faults, weighted by inverse distance that stays finite
 /// on them, so each fault's profile holds at it and all meet smoothly at vertices.
-void add_plate(const PlacedPlate& placed, const CoastTerms& coast, const NodeGroup& group, GroupSums& sums);
+void add_plate(const PlacedPlate& placed, const ShelfTerms& coast, const NodeGroup& group, GroupSums& sums);
 
 /// Divides the channels by the share.
 void finish_group(GroupSums& sums);

@@ -82,6 +82,11 @@ TEST(House, HeavyLibrariesAreCompiledInFewSources) {
   EXPECT_TRUE(faults.empty()) << describe(faults);
 }
 
+TEST(House, TypesHaveOneDefinition) {
+  const std::vector<Fault> faults = one_definition_faults(sources_of_the_project());
+  EXPECT_TRUE(faults.empty()) << describe(faults);
+}
+
 TEST(House, FilesAreShortAndFinishedAndStartNoThreadsOfTheirOwn) {
   const auto faults = faults_by(text_faults, false);
   EXPECT_TRUE(faults.empty()) << describe(faults);
@@ -116,6 +121,17 @@ TEST(HouseRules, FindAHeavyLibraryInAHeaderOrInTooManySources) {
   const Source two{"server/observe/b.cpp", "#include <spdlog/spdlog.h>\n"};
   EXPECT_TRUE(heavy_library_faults({one}).empty());
   EXPECT_EQ(heavy_library_faults({one, two}).size(), 1U);
+}
+
+TEST(HouseRules, FindASecondDefinitionOfAType) {
+  const auto source = [](const char* path, const std::string& space) {
+    return Source{path, "namespace talus" + space + " {\nstruct Row final : Base {\n};\n}  // namespace\n"};
+  };
+  const Source one = source("core/noise/a.cpp", "");
+  EXPECT_TRUE(one_definition_faults({one}).empty());
+  EXPECT_EQ(one_definition_faults({one, source("core/grid/b.hpp", "")}).size(), 1U);
+  EXPECT_TRUE(one_definition_faults({one, source("core/grid/b.hpp", "::other")}).empty());
+  EXPECT_TRUE(one_definition_faults({one, source("core/grid/b.cpp", " {\nnamespace")}).empty()) << "it is nobody's";
 }
 
 TEST(HouseRules, FindThreadsClocksLongFilesAndUnfinishedWords) {

@@ -180,6 +180,17 @@ std::string lower(std::string_view text) {
   return out;
 }
 
+/// The name of a type whose definition begins at the left of this line.
+std::optional<std::string_view> type_defined(std::string_view line) {
+  if (!line.ends_with('{')) return std::nullopt;
+  for (const std::string_view kind : {"struct ", "class ", "union ", "enum class "}) {
+    if (!line.starts_with(kind)) continue;
+    line.remove_prefix(kind.size());
+    return line.substr(0, line.find(' '));
+  }
+  return std::nullopt;
+}
+
 void thread_and_clock_faults(const Source& source, const Line& line, std::vector<Fault>& out) {
   if (is_test(source.path)) return;
   const bool starts = has_any(
@@ -281,6 +292,29 @@ std::vector<Fault> heavy_library_faults(const std::vector<Source>& sources) {
       message += ' ' + path;
     }
     out.push_back({paths.back(), 0, message});
+  }
+  return out;
+}
+
+std::vector<Fault> one_definition_faults(const std::vector<Source>& sources) {
+  std::vector<Fault> out;
+  std::map<std::string, std::string_view> defined_in;
+  for (const Source& source : sources) {
+    if (is_test(source.path) || !is_cpp(source.path)) continue;
+    std::vector<std::string_view> around;
+    for (const Line& line : lines_of(source.text)) {
+      if (line.text.starts_with("namespace ") && line.text.ends_with('{')) around.push_back(line.text);
+      if (line.text.starts_with("}  // namespace") && !around.empty()) around.pop_back();
+      const auto name = type_defined(line.text);
+      if (!name || std::ranges::find(around, "namespace {") != around.end()) continue;
+      std::string full;
+      for (const std::string_view name_space : around) full += name_space;
+      full += *name;
+      const auto [known, is_first] = defined_in.try_emplace(std::move(full), source.path);
+      if (is_first || known->second == source.path) continue;
+      out.push_back(
+          {source.path, line.number, "defines " + std::string{*name} + ", as does " + std::string{known->second}});
+    }
   }
   return out;
 }

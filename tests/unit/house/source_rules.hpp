@@ -1,6 +1,6 @@
-// The rules of the house that a compiler does not hold: who may include whom, which room may use which library, where
-// threads start and clocks are read, how long a file may be, and that nothing is left unfinished. Pure; a source is a
-// path and a text, so that the rules can be tried on sources that do not exist.
+// The rules of the house that a compiler does not hold: who may include whom, which room may use which library, what is
+// called alike, where threads start and clocks are read, how long a file may be, and that nothing is left unfinished.
+// Pure; a source is a path and a text, so that the rules can be tried on sources that do not exist.
 #pragma once
 
 #include <string>
@@ -29,6 +29,9 @@ std::vector<Fault> include_order_faults(const Source& source);
 std::vector<Fault> library_faults(const Source& source);
 /// Libraries that cost seconds wherever they are included: never in a header, and in few sources.
 std::vector<Fault> heavy_library_faults(const std::vector<Source>& sources);
+/// A type outside anonymous namespaces has one definition: a second one of its name makes a program whose behaviour is
+/// not defined, and no compiler that sees one source at a time says so.
+std::vector<Fault> one_definition_faults(const std::vector<Source>& sources);
 /// Threads, clocks, length and unfinished words.
 std::vector<Fault> text_faults(const Source& source);
 

@@ -181,7 +181,7 @@ TEST(MacroField, LooksAtEveryPlateThatHasAPart) {
   for (const std::uint64_t seed : {6U, 7U}) {
     const MacroField field = field_of(seed);
     const PlateBuilder& plates = field.plates();
-    const CoastTerms coast{1.0f / 6000, 3200, 150};
+    const ShelfTerms coast{1.0f / 6000, 3200, 150};
     PlateGather gather;
     PlateMemo memo;
     float least_share = 1;
