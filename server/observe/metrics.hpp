@@ -161,13 +161,13 @@ class Metrics {
   };
 
   Page& page() {
-    if (mine_.metrics != number_) mine_ = {number_, &page_of_this_thread()};
-    return *mine_.page;
+    if (mine.metrics != number_) mine = {number_, &page_of_this_thread()};
+    return *mine.page;
   }
   Page& page_of_this_thread();
   void add_up(Hop hop, LatencyHistogram& sum) const;
 
-  static inline constinit thread_local Mine mine_{};
+  static inline constinit thread_local Mine mine{};
 
   const std::uint64_t number_;  ///< no other metrics of this process have it
   mutable std::mutex pages_mutex_;
