@@ -58,9 +58,8 @@ std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out) 
   return std::nullopt;
 }
 
-std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_view text, std::int32_t& out) {
-  const std::int32_t low = name == "lod" ? 0 : -kChunkLimit;
-  const std::int32_t high = name == "lod" ? kLodMax : kChunkLimit;
+std::optional<AnswerRoute> read_coordinate(const Coordinate& coordinate, std::string_view text, std::int32_t& out) {
+  const auto& [name, low, high] = coordinate;
   const auto value = whole_number(text);
   if (!value || *value < low || *value > high) {
     return bad_request(fmt::format("bad_{}", name),
@@ -92,10 +91,10 @@ Route chunk_route(const HttpRequest& request, const RouteContext& context, std::
   }
   name.format = found->format;
   z.remove_suffix(found->suffix.size());
-  if (auto refused = read_coordinate("lod", parts[0], name.key.lod)) return std::move(*refused);
-  if (auto refused = read_coordinate("x", parts[1], name.key.x)) return std::move(*refused);
-  if (auto refused = read_coordinate("y", parts[2], name.key.y)) return std::move(*refused);
-  if (auto refused = read_coordinate("z", z, name.key.z)) return std::move(*refused);
+  if (auto refused = read_coordinate(kLod, parts[0], name.key.lod)) return std::move(*refused);
+  if (auto refused = read_coordinate(kX, parts[1], name.key.x)) return std::move(*refused);
+  if (auto refused = read_coordinate(kY, parts[2], name.key.y)) return std::move(*refused);
+  if (auto refused = read_coordinate(kZ, z, name.key.z)) return std::move(*refused);
   if (has_origin(name.format)) {
     if (auto refused = read_origin(request.query, name.origin)) return std::move(*refused);
   }
@@ -110,10 +109,10 @@ Route seam_route(const HttpRequest& request, const RouteContext& context, std::s
   PayloadName name;
   name.world = static_cast<std::uint32_t>(world);
   name.format = format->strip;
-  if (auto refused = read_coordinate("lod", parts[0], name.key.lod)) return std::move(*refused);
-  if (auto refused = read_coordinate("x", parts[1], name.key.x)) return std::move(*refused);
-  if (auto refused = read_coordinate("y", parts[2], name.key.y)) return std::move(*refused);
-  if (auto refused = read_coordinate("z", parts[3], name.key.z)) return std::move(*refused);
+  if (auto refused = read_coordinate(kLod, parts[0], name.key.lod)) return std::move(*refused);
+  if (auto refused = read_coordinate(kX, parts[1], name.key.x)) return std::move(*refused);
+  if (auto refused = read_coordinate(kY, parts[2], name.key.y)) return std::move(*refused);
+  if (auto refused = read_coordinate(kZ, parts[3], name.key.z)) return std::move(*refused);
   const auto face = face_named(parts[4].substr(0, dot));
   if (!face) return bad_request("bad_face", "face: expected one of px nx py ny pz nz");
   name.face = *face;
@@ -128,9 +127,9 @@ Route column_route(const HttpRequest& request, const RouteContext& context, std:
   name.world = static_cast<std::uint32_t>(world);
   name.format = PayloadFormat::kHeight;
   const std::string_view z = parts[2].substr(0, parts[2].size() - kSuffix.size());
-  if (auto refused = read_coordinate("lod", parts[0], name.key.lod)) return std::move(*refused);
-  if (auto refused = read_coordinate("x", parts[1], name.key.x)) return std::move(*refused);
-  if (auto refused = read_coordinate("z", z, name.key.z)) return std::move(*refused);
+  if (auto refused = read_coordinate(kLod, parts[0], name.key.lod)) return std::move(*refused);
+  if (auto refused = read_coordinate(kX, parts[1], name.key.x)) return std::move(*refused);
+  if (auto refused = read_coordinate(kZ, z, name.key.z)) return std::move(*refused);
   return payload_route(request, context, name);
 }
 

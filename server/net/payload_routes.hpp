@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/grid/chunk_key.hpp"
 #include "server/net/routes.hpp"
 
 namespace talus::server {
@@ -20,8 +21,18 @@ AnswerRoute not_found(std::string_view code, std::string_view message);
 
 /// Three numbers of `origin=`, each within what a chunk's corner can be; the refusal if they are not that.
 std::optional<AnswerRoute> read_origin(std::string_view query, glm::dvec3& out);
-/// One coordinate of a key (`lod`, or anything else), or the refusal that names it.
-std::optional<AnswerRoute> read_coordinate(std::string_view name, std::string_view text, std::int32_t& out);
+/// A whole number of a path.
+struct Coordinate {
+  std::string_view name;
+  std::int32_t low;
+  std::int32_t high;
+};
+inline constexpr Coordinate kLod{"lod", 0, kLodMax};
+inline constexpr Coordinate kX{"x", -kChunkLimit, kChunkLimit};
+inline constexpr Coordinate kY{"y", -kChunkLimit, kChunkLimit};
+inline constexpr Coordinate kZ{"z", -kChunkLimit, kChunkLimit};
+/// The number, or the refusal that names it.
+std::optional<AnswerRoute> read_coordinate(const Coordinate& coordinate, std::string_view text, std::int32_t& out);
 /// A payload of a world that exists, or 304 without work.
 Route payload_route(const HttpRequest& request, const RouteContext& context, const PayloadName& name);
 /// `parts` are what follows `chunks/`: lod, x, y, z, where the last also carries the format.

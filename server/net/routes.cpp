@@ -74,12 +74,7 @@ Route map_route(const HttpRequest& request, const RouteContext& context, std::si
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     const std::int32_t limit = i == 0 ? 0 : map_tile_limit(values[0], cells);
     const std::int32_t high = i == 0 ? kMapZoomMax : limit - 1;
-    const auto value = whole_number(texts[i]);
-    if (!value || *value < -limit || *value > high) {
-      return bad_request(fmt::format("bad_{}", kNames[i]),
-                         fmt::format("{}: expected a whole number from {} to {}", kNames[i], -limit, high));
-    }
-    values[i] = *value;
+    if (auto refused = read_coordinate({kNames[i], -limit, high}, texts[i], values[i])) return std::move(*refused);
   }
   PayloadName name;
   name.world = static_cast<std::uint32_t>(world);

@@ -107,9 +107,9 @@ std::optional<AnswerRoute> read_tree(Segments parts, TileTree& out) {
     return std::nullopt;
   }
   ChunkKey column;
-  if (auto refused = read_coordinate("lod", parts[0], column.lod)) return refused;
-  if (auto refused = read_coordinate("x", parts[1], column.x)) return refused;
-  if (auto refused = read_coordinate("z", parts[2], column.z)) return refused;
+  if (auto refused = read_coordinate(kLod, parts[0], column.lod)) return refused;
+  if (auto refused = read_coordinate(kX, parts[1], column.x)) return refused;
+  if (auto refused = read_coordinate(kZ, parts[2], column.z)) return refused;
   out = protocol::column_tree(column.lod, column.x, column.z);
   return std::nullopt;
 }
