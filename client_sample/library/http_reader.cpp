@@ -16,35 +16,36 @@ constexpr std::size_t kFieldBytesMax = 64 * 1024;
 /// What llhttp has found so far.
 struct HttpReader::Parsing {
   llhttp_t parser{};
-  llhttp_settings_t settings{};
   HttpAnswer answer;
   std::string name;
   std::string value;
-  bool in_value = false;
   std::size_t field_bytes = 0;
   bool is_whole = false;
   bool is_too_large = false;
   bool is_kept_open = false;
 
   Parsing() {
-    llhttp_settings_init(&settings);
-    settings.on_header_field = on_name;
-    settings.on_header_value = on_value;
-    settings.on_headers_complete = on_head_end;
-    settings.on_body = on_body;
-    settings.on_message_complete = on_end;
-    llhttp_init(&parser, HTTP_RESPONSE, &settings);
+    llhttp_init(&parser, HTTP_RESPONSE, &callbacks());
     parser.data = this;
+  }
+
+  static const llhttp_settings_t& callbacks() {
+    static const llhttp_settings_t kCallbacks = [] {
+      llhttp_settings_t callbacks;
+      llhttp_settings_init(&callbacks);
+      callbacks.on_header_field = on_name;
+      callbacks.on_header_value = on_value;
+      callbacks.on_header_value_complete = on_field_end;
+      callbacks.on_headers_complete = on_head_end;
+      callbacks.on_body = on_body;
+      callbacks.on_message_complete = on_end;
+      return callbacks;
+    }();
+    return kCallbacks;
   }
 
   static Parsing& of(llhttp_t* parser) { return *static_cast<Parsing*>(parser->data); }
 
-  void end_field() {
-    if (!name.empty()) answer.fields[name] = value;
-    name.clear();
-    value.clear();
-    in_value = false;
-  }
   int take_field(std::string& into, std::string_view text) {
     field_bytes += text.size();
     is_too_large = is_too_large || field_bytes > kFieldBytesMax;
@@ -53,21 +54,20 @@ struct HttpReader::Parsing {
   }
 
   static int on_name(llhttp_t* parser, const char* at, std::size_t size) {
-    Parsing& self = of(parser);
-    if (self.in_value) self.end_field();
     std::string lower(at, size);
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return self.take_field(self.name, lower);
+    return of(parser).take_field(of(parser).name, lower);
   }
   static int on_value(llhttp_t* parser, const char* at, std::size_t size) {
+    return of(parser).take_field(of(parser).value, {at, size});
+  }
+  static int on_field_end(llhttp_t* parser) {
     Parsing& self = of(parser);
-    self.in_value = true;
-    return self.take_field(self.value, {at, size});
+    self.answer.fields[std::exchange(self.name, {})] = std::exchange(self.value, {});
+    return HPE_OK;
   }
   static int on_head_end(llhttp_t* parser) {
-    Parsing& self = of(parser);
-    self.end_field();
-    self.answer.status = static_cast<unsigned>(llhttp_get_status_code(parser));
+    of(parser).answer.status = static_cast<unsigned>(llhttp_get_status_code(parser));
     return HPE_OK;
   }
   static int on_body(llhttp_t* parser, const char* at, std::size_t size) {

@@ -231,7 +231,8 @@ bool HttpConnection::answer_now(Route& route, Instant now) {
     const std::string& etag = net_.worlds[chunk->name.world]->etag(chunk->name);
     send(chunk_answer(std::move(payload), etag, chunk->name.format), now);
   } else if (std::holds_alternative<MetricsRoute>(route)) {
-    send(metrics_answer(net_.metrics), now);
+    HttpAnswer answer = metrics_answer(net_.metrics);
+    send(std::move(answer), net_.clock.now());  // writing begins behind what makes the text
   } else {
     return false;
   }

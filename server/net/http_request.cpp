@@ -193,7 +193,7 @@ const HttpFault& fault_of(llhttp_errno_t error) {
     case HPE_INVALID_VERSION:
       return kVersion;
     case HPE_INVALID_HEADER_TOKEN:
-    case HPE_CB_HEADER_VALUE_COMPLETE:
+    case HPE_CB_HEADER_VALUE_COMPLETE:  // ours, of a field without a name
       return kFieldName;
     case HPE_INVALID_CONTENT_LENGTH:
       return kLength;

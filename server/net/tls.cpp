@@ -3,14 +3,16 @@
 #include <openssl/bio.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <ctime>
 #include <new>
+#include <span>
 #include <string_view>
+
+#include "server/net/socket.hpp"
 
 namespace talus::server {
 
@@ -28,14 +30,19 @@ bool is_worth_retrying() {
 
 int bio_write(BIO* bio, const char* data, int size) {
   BIO_clear_retry_flags(bio);
-  const ssize_t sent = ::send(descriptor_of(bio), data, static_cast<std::size_t>(size), MSG_NOSIGNAL);
+  iovec part{const_cast<char*>(data), static_cast<std::size_t>(size)};  // only read
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  const ssize_t sent = send_some(descriptor_of(bio), message);
   if (sent < 0 && is_worth_retrying()) BIO_set_retry_write(bio);
   return static_cast<int>(sent);
 }
 
 int bio_read(BIO* bio, char* data, int size) {
   BIO_clear_retry_flags(bio);
-  const ssize_t got = ::recv(descriptor_of(bio), data, static_cast<std::size_t>(size), 0);
+  const ssize_t got =
+      receive_some(descriptor_of(bio), std::as_writable_bytes(std::span(data, static_cast<std::size_t>(size))));
   if (got < 0 && is_worth_retrying()) BIO_set_retry_read(bio);
   return static_cast<int>(got);
 }

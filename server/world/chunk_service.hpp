@@ -79,8 +79,8 @@ class ChunkService {
   ChunkService& operator=(const ChunkService&) = delete;
 
   /// What is in memory or can be known without work; else nullptr, and `make` is the next step. Cheap. Requires
-  /// is_valid(name.key) and a world that exists. `now` is when it was asked, and
-  /// becomes when that was known.
+  /// is_valid(name.key) and a world that exists. `now` is when it was asked, and becomes
+  /// when that was known.
   PayloadRef at_once(const PayloadName& name, Instant& now);
   /// Joins or starts the job that makes it.
   Answer make(const PayloadName& name, const Asker& asker, Done done);

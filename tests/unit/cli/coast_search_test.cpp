@@ -17,6 +17,8 @@ TEST(CoastSearch, LooksIntoTheSameShoresEveryTimeAndIntoNoneWhereThereIsNoSea) {
   EXPECT_EQ(once.arches, again.arches);
   EXPECT_EQ(once.caves, again.caves);
   EXPECT_EQ(once.overhang_m2_per_m, again.overhang_m2_per_m);
+  EXPECT_EQ(once.loose, again.loose);
+  EXPECT_EQ(once.loose > 0, once.loose_m3 > 0);
 
   SurveyGrid inland = grid;
   for (float& height : inland.height_m) height = 100;

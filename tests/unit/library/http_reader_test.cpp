@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
 #include <string_view>
 
 namespace talus::client {
@@ -42,6 +44,28 @@ TEST(HttpReader, KnowsWhenTheConnectionEndsWithAnAnswer) {
   ASSERT_EQ(reader.feed({}), State::kWhole);
   EXPECT_EQ(reader.take().body, "rest");
   EXPECT_FALSE(reader.is_kept_open());
+}
+
+TEST(HttpReader, PutsChunkedBodiesTogetherAndKeepsFieldsApart) {
+  HttpReader reader;
+  const std::string_view chunked =
+      "HTTP/1.1 200 OK\r\nA: b\r\nEmpty:\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nhel\r\n2\r\nlo\r\n0\r\n\r\n";
+  for (const char& c : chunked.substr(0, chunked.size() - 1)) ASSERT_EQ(reader.feed({&c, 1}), State::kMore);
+  ASSERT_EQ(reader.feed(chunked.substr(chunked.size() - 1)), State::kWhole);
+  const HttpAnswer answer = reader.take();
+  EXPECT_EQ(answer.body, "hello");
+  EXPECT_EQ(answer.fields,
+            (std::map<std::string, std::string>{{"a", "b"}, {"empty", ""}, {"transfer-encoding", "chunked"}}));
+}
+
+TEST(HttpReader, TellsABodyCutShort) {
+  for (const std::string_view cut :
+       {"HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nhel",
+        "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nh", "HTTP/1.1 200 OK\r\nContent-Le"}) {
+    HttpReader reader;
+    ASSERT_EQ(reader.feed(cut), State::kMore) << cut;
+    EXPECT_EQ(reader.feed({}), State::kBroken) << cut;
+  }
 }
 
 TEST(HttpReader, RefusesWhatIsNoAnswerOrNobodyAskedFor) {

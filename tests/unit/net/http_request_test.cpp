@@ -1,5 +1,6 @@
 #include "server/net/http_request.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -89,6 +90,24 @@ TEST(HttpRequest, IsRefusedWhenItCouldBeReadInTwoWays) {
     ASSERT_FALSE(request.has_value()) << refused.why;
     EXPECT_EQ(request.error().status, refused.status) << refused.why << ": " << request.error().message;
   }
+}
+
+TEST(HttpRequest, SaysWhatIsWrongWithIt) {
+  const auto why = [](const std::string& line, const std::string& fields) {
+    const auto request = read(line + "\r\nHost: a\r\n" + fields + "\r\n");
+    return request ? std::string("nothing") : std::string(request.error().message);
+  };
+  const std::string get = "GET / HTTP/1.1";
+  const auto names = [](const char* word) { return testing::HasSubstr(word); };
+  EXPECT_THAT(why(get, ""), names("nothing"));
+  EXPECT_THAT(why("GET / HTTP/2.0", ""), names("version"));
+  EXPECT_THAT(why(get, "A b: c\r\n"), names("header name"));
+  EXPECT_THAT(why(get, ": c\r\n"), names("header name"));
+  EXPECT_THAT(why(get, "Content-Length: 3x\r\n"), names("not a whole number"));
+  EXPECT_THAT(why(get, "Content-Length: 3\r\nContent-Length: 3\r\n"), names("several Content-Length"));
+  EXPECT_THAT(why(get, "Content-Length: 3\r\nTransfer-Encoding: chunked\r\n"), names("beside Transfer-Encoding"));
+  EXPECT_THAT(why(get, "Transfer-Encoding: gzip\r\n"), names("end in chunked"));
+  EXPECT_THAT(why("FETCH / HTTP/1.1", ""), names("not an HTTP/1.1 request"));
 }
 
 TEST(HttpRequest, IsRefusedWithMoreThan64Fields) {
